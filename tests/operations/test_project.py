@@ -17,7 +17,7 @@ from thalweg.cli.main import main
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
-from thalweg.operations.dredging.cycle_records import SailedLeg
+from thalweg.operations.dredging.cycle_records import SailedLeg, cycle_record
 from thalweg.operations.dredging.loading_curves import LoadingCurve
 from thalweg.operations.dredging.project import Project
 from thalweg.operations.dredging.project_environment import (
@@ -148,6 +148,15 @@ def test_the_result_states_the_prices_of_its_cost(result):
     assert prices["currency"] == "EUR" == result.optimised.totals["currency"]
     assert prices["time_per_day"] == {"value": pytest.approx(100_000.0), "source": "ship file"}
     assert prices["per_second_per_cubed_speed"] == {"value": 0.008, "source": "ship file"}
+
+
+def test_rows_of_the_cycles_add_up_to_the_table(result):
+    """They had neither pumps nor the hotel load at the sites."""
+    for run in result.runs:
+        rows = [cycle_record(cycle) for cycle in run.cycles]
+        for name in ("fuel_t", "energy_gj"):
+            total = sum(row[name] for row in rows)
+            assert total == pytest.approx(run.totals[name], abs=6e-4 * len(rows))
 
 
 def test_totals_add_up(result):
@@ -320,6 +329,7 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"hopper_m3": -4000}, "hopper_m3 is -4000"),
         ({"loading": 0.0}, "loading.rate_m3_s is 0"),
         ({"unloading": {"rate_m3_s": -1}}, "unloading.rate_m3_s is -1"),
+        ({"unloading": 7650}, "If it is in m3/h, give 2.125"),
         ({"loading": {"minutes": [0, 10, 5], "share": [0, 0.5, 1]}}, "curve of loading"),
         ({"loading": {"rate": 3}}, "no entry of loading named 'rate'"),
         ({"load_factors": [0.0]}, "one of them above 0"),

@@ -192,3 +192,23 @@ def test_members_that_do_not_exist(index) -> None:
 def test_a_single_sea_has_no_members() -> None:
     refused("not an ensemble", lambda: Sea.calm().member(0))
     assert Sea.open(members(2).isel(number=[0])).members == 0
+
+
+@pytest.mark.parametrize("fill", ["nearest:60", "coastal_shelter:60:1"])
+def test_fills_next_to_land_are_those_of_each_member(fill) -> None:
+    """They were refused: "no file holds" the heights that the sea was said to hold."""
+    data = members()
+    data["swh"][..., 0] = np.nan  # next to land
+    sea = Sea.open(data).filled(waves=fill)
+    assert sea.members == 3
+    at_land = [value(sea.member(k), HS, T0 + 1800.0, 11.0, float(data["lon"][0])) for k in range(3)]
+    assert np.isfinite(at_land).all()
+    assert at_land[1] == pytest.approx(2.0 * at_land[0], rel=1e-9)
+    assert at_land[2] == pytest.approx(3.0 * at_land[0], rel=1e-9)
+
+
+def test_waves_from_ahead_have_the_height_of_each_member() -> None:
+    sea = Sea.open(members()).filled(waves="head_seas")
+    place = (T0 + 1800.0, 11.5, 20.5)
+    found = [value(sea.member(k), HS, *place) for k in range(3)]
+    assert found == pytest.approx([(k + 1) * affine(*place) for k in range(3)], rel=1e-9)

@@ -120,7 +120,8 @@ def ensemble_not_allowed_error(count: int) -> InputError:
         f"This sea is an ensemble of {count} members, and one sea is needed here.",
         f"Its members are sea.member(0) to sea.member({count - 1}); evaluate_members evaluates a "
         "route in all of them.",
-        "Select one with sea.member(i).",
+        "Select one with sea.member(i); on the command line plan with --ensemble mean, or give the "
+        "file of one member.",
         members=count,
     )
 

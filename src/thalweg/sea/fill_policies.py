@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.sea import standard_names as nm
+from thalweg.sea.ensemble_layer import EnsembleLayer, member_count, select_member
 from thalweg.sea.layer import Layer, RetimedLayer
 from thalweg.sea.layer_stack import stack_variables
 from thalweg.sea.models.coast_fills import NearestLayer, head_seas_layer, nearest_layer
@@ -100,18 +101,29 @@ def layers_filled(
     for policy, value in models:
         if isinstance(value, str) and value.startswith((NEAREST, SHELTER)):
             fill = _nearest if value.startswith(NEAREST) else _shelter
-            layer, text = fill(filled, policy, value)
-            filled.append(layer)
-            assumptions.append(text)
+            made_of = [fill(part, policy, value) for part in _by_member(filled)]
+            filled.append(_joined([layer for layer, _ in made_of]))
+            assumptions.append(made_of[0][1])
     if values:
         filled.append(constant_layer(values, _FILLED))
     for policy, value in models:
         if isinstance(value, str) and value.startswith((NEAREST, SHELTER)):
             continue
         make, text = _wave_model(value) if policy == "waves" else _WIND_MODEL
-        filled.append(make(filled))
+        filled.append(_joined([make(part) for part in _by_member(filled)]))
         assumptions.append(text)
     return tuple(filled), tuple(assumptions)
+
+
+def _by_member(layers: Sequence[Layer]) -> list[Sequence[Layer]]:
+    """Return the layers of every member of an ensemble, or those of a single sea."""
+    count = member_count(layers)
+    return [select_member(layers, k) for k in range(count)] if count else [layers]
+
+
+def _joined(made: Sequence[Layer]) -> Layer:
+    """Return one layer of those that were made for every member."""
+    return made[0] if len(made) == 1 else EnsembleLayer(tuple(made))
 
 
 def variables_filled(policies: Sequence[tuple[str, FillValue]]) -> frozenset[str]:
@@ -138,8 +150,8 @@ def layers_without_fills(layers: Sequence[Layer]) -> tuple[Layer, ...]:
     """
 
     def is_fill(layer: Layer) -> bool:
-        while isinstance(layer, RetimedLayer):
-            layer = layer.layer
+        while isinstance(layer, (RetimedLayer, EnsembleLayer)):
+            layer = layer.layer if isinstance(layer, RetimedLayer) else layer.member_layers[0]
         constant = isinstance(layer, FormulaLayer) and layer.label == _FILLED
         return constant or isinstance(layer, (NearestLayer, WindSeaLayer, WindOfWavesLayer))
 
@@ -148,7 +160,8 @@ def layers_without_fills(layers: Sequence[Layer]) -> tuple[Layer, ...]:
 
 def filled_distance(layers: Sequence[Layer]) -> float:
     """Return how far from data values are filled with the nearest ones [m]; 0 where none are."""
-    return max((one.distance for one in layers if isinstance(one, NearestLayer)), default=0.0)
+    first = _by_member(layers)[0]
+    return max((one.distance for one in first if isinstance(one, NearestLayer)), default=0.0)
 
 
 def check_fill(policy: str, value: FillValue) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,12 @@ from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
 from thalweg.route import Route
+
+if TYPE_CHECKING:
+    from thalweg.operations.dredging.project_parts import WorkScope
+    from thalweg.ship import Ship
+
+_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel; default without a value in the ship file
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +88,8 @@ class DredgingCycle:
     volume : Volume moved [m3].
     loading, unloading : Time of work [s].
     loading_pause, unloading_pause : Pauses of that work in waves or wind over the limits [s].
+    site_fuel : Of pumps and hotel load at the sites [kg].
+    other_energy : Of pumps, and of the hotel load of the whole cycle [J].
     """
 
     number: int
@@ -94,6 +102,18 @@ class DredgingCycle:
     back: SailedLeg
     loading_pause: float = 0.0
     unloading_pause: float = 0.0
+    site_fuel: float = 0.0
+    other_energy: float = 0.0
+
+    @property
+    def fuel(self) -> float:
+        """Fuel of the whole cycle [kg]; NaN if unknown."""
+        return self.site_fuel + sum(leg.fuel for leg in self.legs)
+
+    @property
+    def energy(self) -> float:
+        """Energy of propulsion, pumps and hotel load [J]; NaN if unknown."""
+        return self.other_energy + sum(leg.energy for leg in self.legs)
 
     @property
     def pauses(self) -> float:
@@ -114,6 +134,25 @@ class DredgingCycle:
     def legs(self) -> tuple[SailedLeg, SailedLeg]:
         """The legs out and back."""
         return self.out, self.back
+
+
+def with_other_consumption(cycle: DredgingCycle, work: WorkScope, ship: Ship) -> DredgingCycle:
+    """Return a cycle with what pumps and hotel load take beside the fuel of its legs.
+
+    Parameters
+    ----------
+    work : With the power of loading and unloading [W].
+    ship : With her hotel load; pumps burn as her engine does, or 195 g/kWh where that is unknown.
+    """
+    own = ship.specific_fuel_consumption
+    consumption = _PRIME_MOVER_SFOC / 3.6e9 if math.isnan(own) else own  # kg/J
+    pumps = cycle.loading * work.loading.power + cycle.unloading * work.unloading.power
+    at_sites = cycle.loading + cycle.unloading + cycle.pauses
+    return replace(
+        cycle,
+        site_fuel=at_sites * ship.waiting_fuel_rate + pumps * consumption,
+        other_energy=pumps + ship.hotel_power * (cycle.end - cycle.start),
+    )
 
 
 def leg_energy(route: Route) -> float:
@@ -162,9 +201,7 @@ def cycle_record(cycle: DredgingCycle) -> dict[str, Any]:
             f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
         }
     sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
-    fuel, energy = (
-        finite_or_none(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy")
-    )
+    fuel, energy = finite_or_none(cycle.fuel), finite_or_none(cycle.energy)
     data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
     data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
     data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)

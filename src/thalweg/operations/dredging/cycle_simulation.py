@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from thalweg.core.errors import OutsidePeriodError
 from thalweg.core.time import format_time
-from thalweg.operations.dredging.cycle_records import DredgingCycle
+from thalweg.operations.dredging.cycle_records import DredgingCycle, with_other_consumption
 from thalweg.operations.dredging.project import Project
 from thalweg.operations.dredging.project_environment import (
     MessageCallback,
@@ -198,7 +198,7 @@ class Simulator:
         back = leg_planner.sail(0.0, unloaded, outward=False)
         if back is None:
             return None
-        return DredgingCycle(
+        cycle = DredgingCycle(
             number=number,
             start=time,
             load_factor=load_factor,
@@ -210,6 +210,7 @@ class Simulator:
             loading_pause=max(0.0, loaded - time - loading),
             unloading_pause=max(0.0, unloaded - out.arrive - unloading),
         )
+        return with_other_consumption(cycle, work, leg_planner.environment.ship)
 
     def _too_short(self, moved: float, time: float) -> OutsidePeriodError:
         project, which = self.project, f" ({self.name})" if self.name else ""

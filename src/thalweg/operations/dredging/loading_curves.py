@@ -12,6 +12,7 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.given_numbers import is_number
 from thalweg.operations.dredging.project_validation import positive_number
 
+_SHORTEST_WORK = 60.0  # on a whole hopper [s]: a rate that takes less is in another unit
 _KEYS = ("rate_m3_s", "minutes", "share", "power_kw", "fixed_minutes")
 
 
@@ -104,6 +105,7 @@ class LoadingCurve:
         }
         if "rate_m3_s" in given and "minutes" not in given:
             rate = positive_number({name: given["rate_m3_s"]}, name)
+            _check_rate(name, rate, hopper)
             return cls.constant(rate, hopper, **more)
         minutes, share = given.get("minutes"), given.get("share")
         _check_curve(what, minutes, share, "rate_m3_s" in given)
@@ -145,6 +147,18 @@ class LoadingCurve:
         if self.fixed:
             data["fixed_minutes"] = self.fixed / 60.0
         return data
+
+
+def _check_rate(name: str, rate: float, hopper: float) -> None:
+    """Raise `InputError` for a rate [m3/s] that fills or empties the hopper within a minute."""
+    if hopper / rate >= _SHORTEST_WORK:
+        return
+    raise InputError(
+        f"{name} is {rate:g}: {hopper:,.0f} m3 in {hopper / rate:.1f} s.",
+        f"Rates are in m3/s, at most {hopper / _SHORTEST_WORK:g} for this hopper.",
+        f"If it is in m3/h, give {rate / 3600.0:.4g}.",
+        field=name,
+    )
 
 
 def _non_negative(name: str, value: Any) -> float:

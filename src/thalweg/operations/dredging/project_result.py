@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from thalweg.operations.dredging.project_environment import ProjectEnvironment
 
 WEEK = 7.0 * DAY
-_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel; default without a value in the ship file
 
 #: Rows of the table: key, label, format.
 TABLE_ROWS = (
@@ -215,19 +214,14 @@ def summarise_run(
 
 def _energy_and_fuel(cycles: list[DredgingCycle], project: Project, ship: Ship) -> dict[str, Any]:
     """Return energy, fuel, CO2 and cost; None where the ship file lacks data."""
-    work, own = project.work, ship.specific_fuel_consumption
     hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
-    pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
-    propulsion = sum(leg.energy for c in cycles for leg in c.legs)
-    sfoc = _PRIME_MOVER_SFOC / 3.6e9 if math.isnan(own) else own  # kg/J
-    at_sites = sum(c.loading + c.unloading + c.pauses for c in cycles)
-    at_work = at_sites * ship.waiting_fuel_rate + pumps * sfoc
-    fuel = at_work + sum(leg.fuel for c in cycles for leg in c.legs)
+    at_work = sum(cycle.site_fuel for cycle in cycles)
+    energy, fuel = (sum(getattr(cycle, x) for cycle in cycles) for x in ("energy", "fuel"))
     co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
     volume = sum(c.volume for c in cycles)
     return {
-        "energy_gj": finite_or_none((propulsion + hotel + pumps) / 1e9),
-        "hotel_gj": None if math.isnan(propulsion) else finite_or_none(hotel / 1e9),
+        "energy_gj": finite_or_none(energy / 1e9),
+        "hotel_gj": None if math.isnan(energy) else finite_or_none(hotel / 1e9),
         "fuel_t": finite_or_none(fuel / TONNE),
         "co2_t": finite_or_none(co2 / TONNE),
         "co2_kg_m3": finite_or_none(co2 / volume),
