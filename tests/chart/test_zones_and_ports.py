@@ -162,6 +162,15 @@ def test_an_ambiguous_port_lists_the_candidates():
     assert "USGGE" in caught.value.details["near"]
 
 
+@pytest.mark.parametrize(
+    ("text", "point"), [("51,45 3,20", "51.45 3.20"), ("-33,5; 151,2", "-33.5  151.2")]
+)
+def test_positions_with_decimal_commas_are_refused_with_points(text, point):
+    with pytest.raises(InputError, match="decimal points") as caught:
+        PORTS.lookup(text)
+    assert repr(point) in str(caught.value)
+
+
 def test_an_unknown_port_names_near_ones():
     with pytest.raises(InputError, match="Rotterdam"):
         PORTS.lookup("Rotterdm")

@@ -150,6 +150,13 @@ def test_the_result_states_the_prices_of_its_cost(result):
     assert prices["per_second_per_cubed_speed"] == {"value": 0.008, "source": "ship file"}
 
 
+def test_a_route_whose_sites_are_given_as_longitude_and_latitude_gets_a_hint():
+    data = example()
+    swapped = {name: data[name][::-1] for name in ("load", "unload")}
+    with pytest.raises(InputError, match="Are latitude and longitude swapped"):
+        Project.from_dict({**data, **swapped})
+
+
 def test_rows_of_the_cycles_add_up_to_the_table(result):
     """They had neither pumps nor the hotel load at the sites."""
     for run in result.runs:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from typing import Final
+
+from thalweg.core.errors import InputError
 
 #: Letters that are not a base letter with an accent.
 _LETTER_SUBSTITUTES: Final = str.maketrans(
@@ -103,3 +106,15 @@ def _same_spelling(word: str) -> str:
     while "ii" in plain:
         plain = plain.replace("ii", "i")
     return plain
+
+
+def decimal_commas_error(text: str) -> InputError | None:
+    """Return the error of a position with decimal commas, such as ``51,45 3,20``; else None."""
+    if not re.fullmatch(r"\s*-?\d{1,2},\d+[ ;]\s*-?\d{1,3},\d+\s*", text):
+        return None
+    return InputError(
+        f"{text!r} is not a position.",
+        "Degrees have decimal points; a comma stands between latitude and longitude.",
+        f"Give {text.strip().replace(',', '.').replace(';', ' ')!r}.",
+        value=text,
+    )

@@ -17,6 +17,7 @@ from importlib import resources
 from typing import Final
 
 from thalweg.chart.port_names import (
+    decimal_commas_error,
     loose_port_names,
     normalised_port_name,
     place_name,
@@ -223,6 +224,8 @@ class Ports:
 
     def _unknown(self, text: str) -> InputError:
         """Return the error of a name that no port has: a wrong country, a country, or a typo."""
+        if commas := decimal_commas_error(text):
+            return commas
         name, comma, place = text.rpartition(",") if "," in text else (text, "", "")
         elsewhere = _separate_ports(self._with_name(name)) if comma else []
         code = "" if comma else country_code_of(text)

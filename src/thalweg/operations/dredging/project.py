@@ -270,10 +270,16 @@ def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
     for end, site, which in ((route[0], sites.load, "starts"), (route[-1], sites.unload, "ends")):
         separation = float(distance(*end, *site))
         if separation > _SITE_TOLERANCE:
+            reversed_site = bool(abs(end[1]) <= 90.0) and (
+                float(distance(end[1], end[0], *site)) <= _SITE_TOLERANCE
+            )
+            advice = f"Make it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}."
+            if reversed_site:
+                advice = "Are latitude and longitude swapped? Positions are latitude, longitude."
             raise InputError(
                 f"The route of the base case {which} {separation:,.0f} m from the site.",
                 "It runs from the loading site to the unloading site.",
-                f"Make it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
+                advice,
                 field="base_case.route",
             )
 
