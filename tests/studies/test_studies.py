@@ -21,6 +21,7 @@ import yaml
 pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
 
 from thalweg.cli.main import main
+from thalweg.cli.study_command import _print_savings
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
@@ -262,6 +263,19 @@ def test_a_study_without_any_route_is_summarised_with_the_reason(folder, tmp_pat
     assert main(["study", "summary", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "1 voyage without a route (OutsidePeriodError)" in printed and "2027" in printed
+
+
+def test_savings_are_stated_with_the_voyages_that_have_none(capsys):
+    hours, saved = [100.0, 120.0, 60.0], [np.nan, 3.0, 1.0]
+    voyages = pd.DataFrame({"time_h": hours, "saved_time_h": saved, "saved_fuel_t": saved})
+    _print_savings(voyages)
+    _print_savings(voyages.iloc[:1])
+    _print_savings(pd.DataFrame({"time_h": hours}))
+    some, none = capsys.readouterr().out.strip().split("\n\n")
+    first = "Against the route that ignores the weather,"
+    last = "; on the others that route does not keep the limits, and no saving is counted."
+    assert some == f"{first} 2 of 3 voyages save 2.00 h and 2.00 t on average{last}"
+    assert none == f"{first} 0 of 1 voyages have a saving{last}"
 
 
 def comparable(frame: pd.DataFrame) -> list:

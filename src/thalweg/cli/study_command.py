@@ -194,6 +194,27 @@ def _print_groups(table: Any) -> None:
     print()
 
 
+def _print_savings(voyages: Any) -> None:
+    """Print against how many routes that ignore the weather savings are counted."""
+    if "saved_time_h" not in voyages or not voyages["time_h"].notna().any():
+        return
+    compared = voyages[voyages["time_h"].notna()]
+    kept = compared["saved_time_h"].notna()
+    text = f"Against the route that ignores the weather, {int(kept.sum())} of {len(kept)} voyages"
+    if kept.any():
+        hours, tonnes = (
+            compared.loc[kept, name].mean() if name in compared else float("nan")
+            for name in ("saved_time_h", "saved_fuel_t")
+        )
+        fuel = f" and {tonnes:z.2f} t" if tonnes == tonnes else ""
+        text += f" save {hours:z.2f} h{fuel} on average"
+    else:
+        text += " have a saving"
+    if not kept.all():
+        text += "; on the others that route does not keep the limits, and no saving is counted"
+    print(f"{text}.\n")
+
+
 def _summary(arguments: argparse.Namespace) -> int:
     from thalweg.studies import summarise_study
 
@@ -227,6 +248,7 @@ def _summary(arguments: argparse.Namespace) -> int:
         return SUCCESS
     _print_voyages(summary.voyages)
     _print_groups(summary.table)
+    _print_savings(summary.voyages)
     if not summary.best_months.empty:
         print("Best month by the median of each figure:")
         print(summary.best_months.round(2).to_string(index=False))
