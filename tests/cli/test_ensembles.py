@@ -74,3 +74,24 @@ def test_a_sea_without_members_is_no_ensemble(capsys, tmp_path, world, sea):
     sea = [str(tmp_path / word) if word.endswith(".nc") else word for word in sea]
     assert main([*world, *sea, "--ensemble"]) == 2
     assert "the sea has none" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("in_files", [False, True])
+def test_a_route_is_evaluated_in_one_member(capsys, tmp_path, world, in_files):
+    files = [member(tmp_path / f"{k}.nc", set_kn) for k, set_kn in enumerate((-1.0, 0.0, 1.0))]
+    if not in_files:
+        whole = xr.concat([xr.load_dataset(file) for file in files], dim="number")
+        whole.to_netcdf(tmp_path / "all.nc")
+        files = [str(tmp_path / "all.nc")]
+    (tmp_path / "route.csv").write_text("lat,lon\n50.5,1.2\n50.5,2.8\n")
+    given = ["evaluate", str(tmp_path / "route.csv"), *world[3:9], "--speed", "10", "--sea", *files]
+    times = []
+    for number in ("0", "2"):
+        assert main([*given, "--member", number, "--json"]) == 0
+        times.append(json.loads(capsys.readouterr().out)["time_h"])
+    assert times == pytest.approx([61.2 / 9.0, 61.2 / 11.0], rel=2e-3)
+    assert main([*given, "--member", "3"]) == 2
+    assert "Members are numbered 0 to 2" in capsys.readouterr().err
+    if not in_files:
+        assert main(given) == 2
+        assert "thalweg evaluate --member N" in capsys.readouterr().err

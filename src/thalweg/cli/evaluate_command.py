@@ -35,6 +35,13 @@ def add_command(commands: Any) -> None:
         metavar="KN",
         help="ordered speed through calm water [kn]; default: those of the file, else of the ship",
     )
+    parser.add_argument(
+        "--member",
+        type=int,
+        metavar="N",
+        help="sail in member N of an ensemble forecast, from 0; several files of --sea without "
+        "members are one member each",
+    )
     options.add_hold_option(parser)
     options.add_price_options(parser.add_argument_group("fuel, cost"))
     parser.set_defaults(run=run)

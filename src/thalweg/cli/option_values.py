@@ -73,8 +73,10 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
             "Thalweg never assumes calm weather.",
             "Give --sea FILE..., --sea storm, or --calm.",
         )
+    member = getattr(arguments, "member", None)
     if arguments.calm:
-        return _check_ensemble_choice(Sea.calm(), arguments)
+        calm = _check_ensemble_choice(Sea.calm(), arguments)
+        return calm if member is None else calm.member(member)
     files = [name for name in arguments.sea if name != "storm"]
     options: dict[str, Any] = {
         "mapping": variable_mapping(arguments),
@@ -83,12 +85,14 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     if files:
         arguments.progress(f"reading {', '.join(files)}")
     layers = [Sea.open(*files, **options)] if files else []
-    if len(files) > 1 and getattr(arguments, "ensemble", None) and not layers[0].members:
+    of_members = getattr(arguments, "ensemble", None) or member is not None
+    if len(files) > 1 and of_members and not layers[0].members:
         layers = [Sea.ensemble(*files, **options)]
     if "storm" in arguments.sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
     sea = _check_ensemble_choice(sea, arguments)
+    sea = sea if member is None else sea.member(member)
     if policies:
         from thalweg.planning.request.filled_sea import filled_in_turns
         from thalweg.planning.request.voyage_surroundings import chart_of_entries

@@ -118,10 +118,9 @@ def ensemble_not_allowed_error(count: int) -> InputError:
     """Return the error for an ensemble where a single sea is needed."""
     return InputError(
         f"This sea is an ensemble of {count} members, and one sea is needed here.",
-        f"Its members are sea.member(0) to sea.member({count - 1}); evaluate_members evaluates a "
-        "route in all of them.",
-        "Select one with sea.member(i); on the command line plan with --ensemble mean, or give the "
-        "file of one member.",
+        f"Its members are numbered 0 to {count - 1}; in Python evaluate_members evaluates a route "
+        "in all of them.",
+        "Select one: thalweg evaluate --member N, member: in a study, sea.member(i) in Python.",
         members=count,
     )
 
