@@ -325,6 +325,8 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
     constant = LoadingCurve.from_data(1.5, 4000.0, "loading")
     assert constant.time(0.5) == pytest.approx(2000.0 / 1.5)
     coupled = LoadingCurve.from_data({"rate_m3_s": 1.5, "fixed_minutes": 10}, 4000.0, "unloading")
+    hourly = LoadingCurve.from_data({"rate_m3_h": 7650}, 4000.0, "unloading")
+    assert hourly.time(1.0) == pytest.approx(3600.0 * 4000.0 / 7650.0)
     assert coupled.time(0.5) == pytest.approx(2000.0 / 1.5 + 600.0)
 
 
@@ -336,9 +338,14 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"hopper_m3": -4000}, "hopper_m3 is -4000"),
         ({"loading": 0.0}, "loading.rate_m3_s is 0"),
         ({"unloading": {"rate_m3_s": -1}}, "unloading.rate_m3_s is -1"),
-        ({"unloading": 7650}, "If it is in m3/h, give 2.125"),
         ({"loading": {"minutes": [0, 10, 5], "share": [0, 0.5, 1]}}, "curve of loading"),
         ({"loading": {"rate": 3}}, "no entry of loading named 'rate'"),
+        ({"unloading": 7650}, "takes 0.523 s .*m3/s.*rate_m3_h"),
+        ({"unloading": {"rate_m3_h": 1.5}}, "2.67e\\+03 h"),
+        ({"loading": {"minutes": [0, 0.5], "share": [0, 1]}}, "loading.minutes .* takes 30 s"),
+        ({"loading": {"rate_m3_h": 1, "rate_m3_s": 1}}, "more than one rate"),
+        ({"loading": {"rate_m3_s": 1.5, "fixed_minutes": 12000}}, "8.3 days"),
+        ({"loading": {"rate_m3_s": 1.5, "power_kw": 1500e3}}, "power_kw is 1.5e"),
         ({"load_factors": [0.0]}, "one of them above 0"),
         ({"load_factors": [0.5, 1.2]}, "load_factors is"),
         ({"days": -1}, "days is -1"),

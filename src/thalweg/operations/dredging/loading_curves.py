@@ -10,10 +10,14 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.given_numbers import is_number
+from thalweg.core.units import DAY, HOUR
 from thalweg.operations.dredging.project_validation import positive_number
 
-_SHORTEST_WORK = 60.0  # on a whole hopper [s]: a rate that takes less is in another unit
-_KEYS = ("rate_m3_s", "minutes", "share", "power_kw", "fixed_minutes")
+_KEYS = ("rate_m3_s", "rate_m3_h", "minutes", "share", "power_kw", "fixed_minutes")
+_RATES = {"rate_m3_s": 1.0, "rate_m3_h": HOUR}  # units of a rate in m3/s
+_QUICKEST = 60.0  # [s] for a full hopper
+_SLOWEST = 7.0 * DAY  # [s] for a full hopper, and for the fixed time
+_STRONGEST = 1e8  # [W] of pumps and winches
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,8 @@ class LoadingCurve:
         Parameters
         ----------
         data : float or mapping
-            ``rate_m3_s``, or ``minutes`` with ``share``; ``power_kw`` and ``fixed_minutes``.
+            ``rate_m3_s`` or ``rate_m3_h``, or ``minutes`` with ``share``;
+            ``power_kw`` and ``fixed_minutes``.
         hopper : float [m3]
         what : str
             "loading" or "unloading", for errors.
@@ -92,9 +97,9 @@ class LoadingCurve:
         Raises
         ------
         InputError
-            For rates that are not positive, curves that do not increase from 0 to 1, unknown keys.
+            For rates that are not positive, curves that do not increase from 0 to 1, unknown keys,
+            and full hoppers in less than a minute or more than a week.
         """
-        name = f"{what}.rate_m3_s"
         given = data if isinstance(data, Mapping) else {"rate_m3_s": data}
         for key in given:
             if key not in _KEYS:
@@ -103,14 +108,18 @@ class LoadingCurve:
             "power": 1000.0 * _non_negative(f"{what}.power_kw", given.get("power_kw", 0.0)),
             "fixed": 60.0 * _non_negative(f"{what}.fixed_minutes", given.get("fixed_minutes", 0.0)),
         }
-        if "rate_m3_s" in given and "minutes" not in given:
-            rate = positive_number({name: given["rate_m3_s"]}, name)
-            _check_rate(name, rate, hopper)
-            return cls.constant(rate, hopper, **more)
-        minutes, share = given.get("minutes"), given.get("share")
-        _check_curve(what, minutes, share, "rate_m3_s" in given)
-        seconds = tuple(60.0 * float(m) for m in minutes)  # type: ignore[union-attr]
-        return cls(seconds, tuple(float(s) for s in share), **more)  # type: ignore[union-attr]
+        rates = [key for key in _RATES if key in given]
+        if len(rates) == 1 and "minutes" not in given:
+            name = f"{what}.{rates[0]}"
+            rate = positive_number({name: given[rates[0]]}, name) / _RATES[rates[0]]
+            curve = cls.constant(rate, hopper, **more)
+        else:
+            minutes, share = given.get("minutes"), given.get("share")
+            _check_curve(what, minutes, share, bool(rates))
+            seconds = tuple(60.0 * float(m) for m in minutes)  # type: ignore[union-attr]
+            curve = cls(seconds, tuple(float(s) for s in share), **more)  # type: ignore[union-attr]
+        _check_plausible(curve, what, f"{what}.{rates[0] if rates else 'minutes'}")
+        return curve
 
     def time(self, share: float) -> float:
         """Return the time for a share of the hopper.
@@ -149,16 +158,31 @@ class LoadingCurve:
         return data
 
 
-def _check_rate(name: str, rate: float, hopper: float) -> None:
-    """Raise `InputError` for a rate [m3/s] that fills or empties the hopper within a minute."""
-    if hopper / rate >= _SHORTEST_WORK:
-        return
-    raise InputError(
-        f"{name} is {rate:g}: {hopper:,.0f} m3 in {hopper / rate:.1f} s.",
-        f"Rates are in m3/s, at most {hopper / _SHORTEST_WORK:g} for this hopper.",
-        f"If it is in m3/h, give {rate / 3600.0:.4g}.",
-        field=name,
-    )
+def _check_plausible(curve: LoadingCurve, what: str, name: str) -> None:
+    """Raise `InputError` for durations and a power that only another unit explains."""
+    full = curve.seconds[-1]
+    if not _QUICKEST <= full <= _SLOWEST:
+        raise InputError(
+            f"With this {name} {what} a full hopper takes {full:.3g} s ({full / HOUR:.3g} h).",
+            "It takes from one minute to a week. A rate without a name is in m3/s.",
+            f"Check the unit: {what}: {{rate_m3_h: 7650}} in m3 per hour, or rate_m3_s in m3 per "
+            "second; the times of a curve are minutes.",
+            field=name,
+        )
+    if curve.fixed > _SLOWEST:
+        raise InputError(
+            f"{what}.fixed_minutes is {curve.fixed / 60.0:g}, {curve.fixed / DAY:.1f} days.",
+            "It is at most a week.",
+            "Check the unit: it is in minutes.",
+            field=f"{what}.fixed_minutes",
+        )
+    if curve.power > _STRONGEST:
+        raise InputError(
+            f"{what}.power_kw is {curve.power / 1000.0:g}.",
+            f"It is at most {_STRONGEST / 1000.0:g} kW.",
+            "Check the unit: it is in kW.",
+            field=f"{what}.power_kw",
+        )
 
 
 def _non_negative(name: str, value: Any) -> float:
@@ -171,9 +195,9 @@ def _check_curve(what: str, minutes: Any, share: Any, rate_too: bool) -> None:
     """Raise `InputError` unless two lists make a curve from an empty to a full hopper."""
     if rate_too:
         raise InputError(
-            f"The {what} has both a rate and a curve.",
+            f"The {what} has more than one rate, or a rate and a curve.",
             "It has one of them.",
-            "Keep rate_m3_s, or minutes and share.",
+            "Keep one rate, or minutes and share.",
         )
     lists = all(isinstance(x, Sequence) and not isinstance(x, str) for x in (minutes, share))
     sound = lists and len(minutes) == len(share) >= 2
