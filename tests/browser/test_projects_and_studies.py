@@ -97,3 +97,16 @@ def test_a_study_fills_a_heat_map(visit):
     assert page.locator("#depart").input_value() == "1998-08-29 00:00"
     assert page.locator("#n-speed_kn").input_value() == "10"
     visit.picture("study_result")
+
+
+def test_a_rate_per_hour_is_shown_per_second(visit):
+    def answer(route):
+        found = route.fetch().json()
+        project = found.get("project", found)
+        project["unloading"] = {"rate_m3_h": 7650, "power_kw": 2000}
+        route.fulfill(json=found)
+
+    visit.page.route("**/projects/example", answer)
+    page = visit.open("#view=projects")
+    page.get_by_role("button", name="Fill in the example").click()
+    playwright_api.expect(page.locator("#p-unloading")).to_have_value("2.125")

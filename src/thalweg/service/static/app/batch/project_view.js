@@ -11,6 +11,8 @@ import { jobFoot } from "../result/progress_view.js";
 import { SheetTabs } from "./sheet_tabs.js";
 
 const NUMBERS = [["volume_m3", "Volume to move", "m³"], ["hopper_m3", "Full load", "m³"], ["loading", "Loads at", "m³/s"], ["unloading", "Unloads at", "m³/s"], ["days", "At most", "days"], ["min_ukc_m", "Under-keel clearance", "m"], ["load_factors", "Loads to choose from", "count"], ["spacing_m", "Spacing of the network", "m"]];
+// Of loading or unloading, in m3/s; undefined for a curve.
+const ratePerSecond = (work) => work.rate_m3_s ?? (work.rate_m3_h === undefined ? undefined : work.rate_m3_h / 3600);
 const asRow = ([lat, lon]) => `${lat}, ${lon}`;
 
 const WORDS = { path: "/projects", earlier: "Earlier projects", stopped: "The simulation was stopped." };
@@ -104,7 +106,7 @@ export class ProjectView extends BatchView {
     const place = (field, value) => { if (Array.isArray(value)) field.setPosition(...value); else field.set(value || ""); };
     place(this.load, project.load);
     place(this.unload, project.unload);
-    for (const [name] of NUMBERS) { const value = project[name]; this.numbers[name].value = typeof value === "object" && value !== null ? value.rate_m3_s ?? (Array.isArray(value) ? value.length : "") : value ?? ""; }
+    for (const [name] of NUMBERS) { const value = project[name]; this.numbers[name].value = typeof value === "object" && value !== null ? ratePerSecond(value) ?? (Array.isArray(value) ? value.length : "") : value ?? ""; }
     this.start.value = project.start ? inputTime(seconds(project.start)) : "";
     this.tides.checked = Boolean(project.tides);
     this.base.value = (project.base_case?.route || []).map(asRow).join("\n");
@@ -146,7 +148,7 @@ export class ProjectView extends BatchView {
       if (text === "") { if (typeof before !== "object") delete project[name]; continue; }
       const value = Number(text);
       if (!Number.isFinite(value)) { this.fail({ field: name, asked: `${label}: ${text} is not a number.`, remedy: "Give a number." }); return null; }
-      if (before && typeof before === "object") { if (!Array.isArray(before) && before.rate_m3_s !== undefined) project[name] = { ...before, rate_m3_s: value }; else if (Array.isArray(before) && before.length !== value) project[name] = value; } else project[name] = value;
+      if (before && typeof before === "object") { if (!Array.isArray(before) && ratePerSecond(before) !== undefined) { const { rate_m3_h: _, ...others } = before; if (ratePerSecond(before) !== value) project[name] = { ...others, rate_m3_s: value }; } else if (Array.isArray(before) && before.length !== value) project[name] = value; } else project[name] = value;
     }
     if (this.ship.value !== "own") project.ship = this.ship.value;
     project.sea = [...this.sea.querySelectorAll("input:checked")].map((box) => box.value);
