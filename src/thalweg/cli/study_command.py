@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 import time
 from collections import Counter
@@ -206,7 +207,7 @@ def _print_savings(voyages: Any) -> None:
             compared.loc[kept, name].mean() if name in compared else float("nan")
             for name in ("saved_time_h", "saved_fuel_t")
         )
-        fuel = f" and {tonnes:z.2f} t" if tonnes == tonnes else ""
+        fuel = "" if math.isnan(tonnes) else f" and {tonnes:z.2f} t"
         text += f" save {hours:z.2f} h{fuel} on average"
     else:
         text += " have a saving"

@@ -116,8 +116,9 @@ def _longest_interval(sailed: SailedTrack, checked: CheckedPoints) -> float:
 def _between_points(checked: CheckedPoints, longest: float) -> tuple[IntArray, FloatArray]:
     """Return leg and distance along it [m] of places between points that are longer apart [s]."""
     leg, along = checked.points.leg, checked.points.along
-    apart = np.where(np.diff(leg) == 0, np.diff(checked.moments), 0.0)
-    parts = np.ceil(np.nan_to_num(apart) / longest - 1e-9).astype(np.int64)  # NaN: not reached
+    apart = np.diff(checked.moments)
+    apart = np.where((np.diff(leg) == 0) & np.isfinite(apart), apart, 0.0)  # both reached
+    parts = np.ceil(apart / longest - 1e-9).astype(np.int64)
     first = np.flatnonzero(parts > 1)
     which, number = numbered_parts(parts[first] - 1)
     at = first[which]
