@@ -303,7 +303,7 @@ def test_squat_and_speed_loss_go_together(tmp_path):
         "draught_m: 6.5", "draught_m: 6.5, block_coefficient: 0.8"
     )
     ship = Ship.load(_write(tmp_path, text.replace("weight_full_t: 10000", "weight_full_t: 8500")))
-    at = Conditions(depth=[8.2, 9.0, 20.0], wind_speed=12.0, wind_angle=0.0)
+    at = Conditions(depth=[8.2, 9.0, 20.0], wind_speed=10.0, wind_angle=0.0)
     both = ship.speed_through_water(at)
     assert (np.diff(both) > 0.0).all() and (both < 10 * KNOT).all()
     assert ship.tabulate().lookup(dict(at), 0) == pytest.approx(both, rel=0.02)

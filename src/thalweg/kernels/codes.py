@@ -28,7 +28,7 @@ REASONS: Final[dict[int, str]] = {
     WAVE_HEIGHT: "wave height above the limit",
     WIND_SPEED: "wind speed above the limit",
     CURRENT: "current too strong to hold the course",
-    SHIP_RANGE: "outside the range of the ship's table",
+    SHIP_RANGE: "weather in which the ship's speed is not known",
     NO_GO: "no-go zone",
     ARRIVE_BY: "arrives too late",
     SAFETY: "safety or comfort limit of the ship",

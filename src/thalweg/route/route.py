@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 
 ORDERED_TOO_FAST: Final = "ordered speed above the greatest of the ship"  #: start of a reason
+#: Reason of a place where weather outside the range of a speed loss leaves too little of the speed.
+SPEED_NOT_PREDICTED: Final = "weather beyond what the speed loss predicts"
 #: Value [SI] and name of the unit in which a limit is stated, by the start of its reason.
 _UNITS: Final = MappingProxyType(
     {
@@ -34,6 +36,7 @@ _UNITS: Final = MappingProxyType(
         codes.REASONS[codes.WAVE_HEIGHT]: (1.0, " m"),
         codes.REASONS[codes.WIND_SPEED]: (KNOT, " kn"),
         codes.REASONS[codes.OFFING]: (NAUTICAL_MILE, " nm"),
+        SPEED_NOT_PREDICTED: (0.01, " % of the speed left"),
     }
 )
 _MOST_DIGITS = 9  # after the point, of numbers that differ little

@@ -20,6 +20,7 @@ from thalweg.ship.methods.carbon_intensity import (
     required_cii,
 )
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
+from thalweg.ship.models.kwon_speed_loss import LEAST_SPEED_SHARE
 from thalweg.ship.models.propulsion_model import unused_efficiencies
 from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.models.speed_power_laws import speed_power_law_name
@@ -34,8 +35,6 @@ from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 from thalweg.ship.ship_assumptions import load_factor_without_effect
 
-#: Share of the ordered speed below which a speed loss beyond its range gives no speed.
-_LEAST_SPEED_SHARE = 0.5
 SHEET_COMPONENTS = (
     *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
     *("correlation", "waves", "wind", "shallow", "rudder"),
@@ -205,7 +204,7 @@ def _known_speed_rows(
     for k, speed in enumerate(np.unique(speeds)):
         attained = float(ordered.speed_through_water(conditions, k))
         notes = [str(n) for n in ordered.notes(conditions, k)]
-        if notes and attained < _LEAST_SPEED_SHARE * speed:
+        if notes and attained < LEAST_SPEED_SHARE * speed:
             notes.append(
                 f"the method leaves {attained / speed:.0%} of the speed there, which is no "
                 "prediction: no speed is given"

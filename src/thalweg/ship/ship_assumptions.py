@@ -11,7 +11,7 @@ from thalweg.core.units import KNOT
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.estimate import method_assumptions
 from thalweg.ship.methods.speed_loss import ShipType
-from thalweg.ship.models.known_speed_model import KwonSpeedLoss
+from thalweg.ship.models.kwon_speed_loss import KwonSpeedLoss
 from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 

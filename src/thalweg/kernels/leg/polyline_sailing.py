@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.codes import CURRENT, DEPTH, OK, WAVE_HEIGHT, WIND_SPEED
+from thalweg.kernels.codes import CURRENT, DEPTH, OK, SHIP_RANGE, WAVE_HEIGHT, WIND_SPEED
 from thalweg.kernels.compilation.decorators import allocation_free, inlined
 from thalweg.kernels.leg.great_circle_sailing import (
     LENGTH,
@@ -70,7 +70,7 @@ class PolylineResults(NamedTuple):
 @inlined
 def _waiting_may_help(status):
     """Return whether waiting could help."""
-    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
+    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT, SHIP_RANGE)
 
 
 @allocation_free

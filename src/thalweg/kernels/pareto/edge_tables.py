@@ -182,7 +182,7 @@ def sail_edge_priced(world, edge, choice, k, t, work):
 
 @inlined
 def _may_open(status):
-    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT, OUTSIDE_PERIOD)
+    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT, SHIP_RANGE, OUTSIDE_PERIOD)
 
 
 @kernel_only

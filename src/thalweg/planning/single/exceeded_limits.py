@@ -25,25 +25,27 @@ from thalweg.planning.single.weather_gaps import (
     near_edges,
 )
 from thalweg.route import Route
-from thalweg.route.route import Violation
+from thalweg.route.route import SPEED_NOT_PREDICTED, Violation
 from thalweg.sea import standard_names
 from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
 MAX_ROUNDS: Final = 8  #: of leaving out edges
 _MOST_PLACES: Final = 6  # of one route
+_SAME_WIND: Final = 1e-3  # by which winds that leave too little speed may differ
 _DEPTH, _WAVES, _WIND = (
     codes.REASONS[code] for code in (codes.DEPTH, codes.WAVE_HEIGHT, codes.WIND_SPEED)
 )
+_WITH_PLACES = (_DEPTH, _WAVES, _WIND, SPEED_NOT_PREDICTED)
 
 
 def exceeded_limits_on_route(route: Route) -> tuple[Violation, ...]:
-    """Return where a route exceeds a limit of depth, wave height or wind speed.
+    """Return where a route exceeds a limit of depth, wave height, wind speed or speed loss.
 
     Parameters
     ----------
     route : Scored by the referee.
     """
-    found = [v for v in route.violations if v.reason in (_DEPTH, _WAVES, _WIND)]
+    found = [v for v in route.violations if v.reason in _WITH_PLACES]
     return tuple(found[:_MOST_PLACES])
 
 
@@ -117,4 +119,8 @@ def _keeps_limit(
         return np.asarray(~(height > limits.wave_height))
     wind = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], place.time, lat, lon)
     speed = np.hypot(wind[EASTWARD_WIND], wind[NORTHWARD_WIND])
+    if place.reason == SPEED_NOT_PREDICTED:
+        there = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], place.time, [place.lat], [place.lon])
+        met = np.hypot(there[EASTWARD_WIND], there[NORTHWARD_WIND])[0]
+        return np.asarray(~(speed >= (1.0 - _SAME_WIND) * met))
     return np.asarray(~(speed > limits.wind_speed))

@@ -46,7 +46,7 @@ class WeatherStall(NamedTuple):
     Attributes
     ----------
     lat, lon : [deg].
-    speed, calm : Through water, there and in calm water [m/s].
+    speed, calm : Through water, there and in calm water [m/s]; NaN where none is predicted.
     wind : [m/s]; NaN where the ship does not need it.
     height : Of the waves [m]; NaN likewise.
     """
@@ -61,8 +61,14 @@ class WeatherStall(NamedTuple):
     def __str__(self) -> str:
         parts = [f"wind of {self.wind / KNOT:.0f} kn"] if math.isfinite(self.wind) else []
         parts += [f"waves of {self.height:.1f} m"] if math.isfinite(self.height) else []
+        place = f"Near {format_position(self.lat, self.lon)}"
+        if math.isnan(self.speed):
+            return (
+                f"{place} the speed loss leaves less than half of {self.calm / KNOT:.1f} kn, in "
+                f"{' and '.join(parts)}: it is not made for such weather and gives no speed."
+            )
         return (
-            f"Near {format_position(self.lat, self.lon)} the ship makes {self.speed / KNOT:.1f} kn "
+            f"{place} the ship makes {self.speed / KNOT:.1f} kn "
             f"of {self.calm / KNOT:.1f} kn through the water, in {' and '.join(parts)}."
         )
 
@@ -95,7 +101,7 @@ def weather_stall(
     speed, still = (
         float(np.ravel(water.table.lookup(one, water.setting))[0]) for one in (conditions, calm)
     )
-    if not speed < _LEFT * still:
+    if not (speed < _LEFT * still or (math.isnan(speed) and math.isfinite(still))):
         return None
     wind = math.nan
     if "wind_speed" in water.table.axes and EASTWARD_WIND in sampled:

@@ -19,8 +19,12 @@ from thalweg.kernels import codes
 from thalweg.kernels.codes import REASONS
 from thalweg.route.referee.land_clearance import offing_breaches
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
-from thalweg.route.referee.sailing_physics import SailingEnvironment, SailingState
-from thalweg.route.route import Violation
+from thalweg.route.referee.sailing_physics import (
+    SailingEnvironment,
+    SailingState,
+    conditions_at,
+)
+from thalweg.route.route import SPEED_NOT_PREDICTED, Violation
 from thalweg.route.track import Track
 from thalweg.sea.standard_names import plain_names
 from thalweg.ship.condition_variables import (
@@ -29,6 +33,12 @@ from thalweg.ship.condition_variables import (
     WAVE_HEIGHT,
 )
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.models.known_speed_model import SpeedLossModel
+from thalweg.ship.models.kwon_speed_loss import (
+    LEAST_SPEED_SHARE,
+    KwonSpeedLoss,
+    predicted_share,
+)
 
 _PARTS_OF_LEG = 256  # that are looked at for where a leg first touches land
 _LANE_TOLERANCE = 20.0  # legs may run against a traffic lane so far, at its corners [m]
@@ -249,6 +259,46 @@ def seaway_violations(
     return [
         _violation_at(REASONS[codes.SAFETY], points, time, first, float(height[first]), math.nan)
         for first, _ in _stretches(bad, points.leg)
+    ]
+
+
+def unpredicted_speed_violations(
+    world: SailingEnvironment,
+    points: TrackPoints,
+    time: FloatArray,
+    motion: SailingState,
+    at_sea: BoolArray,
+) -> list[Violation]:
+    """Return where a speed loss outside its range leaves too little of the speed to predict it.
+
+    Parameters
+    ----------
+    at_sea : Which points are outside canals and approaches.
+    """
+    model = world.ship.model
+    if not (isinstance(model, SpeedLossModel) and isinstance(model.loss, KwonSpeedLoss)):
+        return []
+    here = conditions_at(
+        world,
+        points,
+        time,
+        sampled=motion.sampled,
+        depth=motion.depth,
+        heading=motion.heading,
+    ).with_default(load_factor=world.ship.loading.load_factor)
+    speed = motion.speed_through_water
+    share = predicted_share(model, here, points.setting, speed)
+    bad = (share < LEAST_SPEED_SHARE) & at_sea & np.isfinite(time)
+    return [
+        _violation_at(
+            SPEED_NOT_PREDICTED,
+            points,
+            time,
+            first + int(np.argmin(share[first:last])),
+            float(share[first:last].min()),
+            LEAST_SPEED_SHARE,
+        )
+        for first, last in _stretches(bad, points.leg)
     ]
 
 

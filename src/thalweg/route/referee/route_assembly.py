@@ -20,6 +20,7 @@ from thalweg.route.referee.limit_checks import (
     limit_violations,
     seaway_violations,
     stoppage_violations,
+    unpredicted_speed_violations,
 )
 from thalweg.route.referee.method_ranges import method_range_notes
 from thalweg.route.referee.onboard_indicators import motion_indicators
@@ -70,6 +71,8 @@ def assemble_route(
     violations, least = _check_limits(sailed, checked, waits, min_ukc)
     violations += stoppage_violations(world, points, time, motion)
     violations += seaway_violations(world, points, time, motion)
+    under_way = pieces.canals.number[points.leg] < 0
+    violations += unpredicted_speed_violations(world, points, time, motion, under_way)
     violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
     departs, arrives = sailed.leg_times()
     legs = {
@@ -91,9 +94,7 @@ def assemble_route(
     for values in columns.values():
         values[~np.isfinite(arrives)] = math.nan
     samples |= at_samples
-    outside = method_range_notes(
-        world, points, time, motion, at_sea=pieces.canals.number[points.leg] < 0
-    )
+    outside = method_range_notes(world, points, time, motion, at_sea=under_way)
     assumptions = (*world.assumptions, *spent.notes, *outside)
     at_sea = legs["leg_kind"] == 0.0
     slowest = float(np.min(legs["ordered_speed"][at_sea], initial=math.inf))

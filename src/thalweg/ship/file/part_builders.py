@@ -12,7 +12,7 @@ from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars, volume_at
 from thalweg.ship.hull.hull_checks import check_depth
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.models.known_speed_model import KwonSpeedLoss
+from thalweg.ship.models.kwon_speed_loss import KwonSpeedLoss
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
 from thalweg.ship.schema.ship_schema import LoadingSection, ModelsSection, ShipFile

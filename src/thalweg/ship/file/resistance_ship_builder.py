@@ -25,8 +25,8 @@ from thalweg.ship.models.added_resistance_model import build_wave_resistance, bu
 from thalweg.ship.models.calm_water_model import CALM_WATER_METHODS, build_calm_water
 from thalweg.ship.models.engine_plant import EngineOrders, EnginePlant, build_engine_plant
 from thalweg.ship.models.force_balance import ForceBalance
-from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
+from thalweg.ship.models.kwon_speed_loss import KwonSpeedLoss
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.propulsion_model import build_propulsion
 from thalweg.ship.models.resistance_model import ResistanceModel

@@ -230,6 +230,16 @@ def kwon_speed_loss(
     return _between_sectors(capped, angle, classes=classes)
 
 
+def greatest_kwon_beaufort(displacement_volume: ArrayLike) -> FloatArray:
+    """Return the highest Beaufort number that Kwon's method is made for.
+
+    Parameters
+    ----------
+    displacement_volume : Displaced volume [m3].
+    """
+    return np.where(np.asarray(displacement_volume, float) < 1e5, 6.0, 8.0)
+
+
 def kwon_notes(
     wind_speed: ArrayLike,
     *,
@@ -256,7 +266,7 @@ def kwon_notes(
     -------
     list of RangeNote : Empty inside the range.
     """
-    highest = 6.0 if np.nanmin(np.asarray(displacement_volume, float)) < 1e5 else 8.0
+    highest = float(np.nanmin(greatest_kwon_beaufort(displacement_volume)))
     number = beaufort_number(wind_speed)
     form = kwon_form_coefficient(
         number, displacement_volume=displacement_volume, loading=loading, ship_type=ship_type

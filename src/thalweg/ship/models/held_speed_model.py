@@ -14,9 +14,9 @@ from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
 from thalweg.ship.models.known_speed_model import (
     KnownSpeedModel,
-    KwonSpeedLoss,
     known_speed_axes,
 )
+from thalweg.ship.models.kwon_speed_loss import KwonSpeedLoss, tabulate_predicted_speed
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import RateFunction, tabulate_settings
@@ -124,7 +124,8 @@ class HeldSpeedModel:
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """One part over wind and depth, as far as they are read."""
-        return self._tabulated(load_factor, tolerance, self.speed_through_water)
+        axes, count = known_speed_axes(self.base, load_factor), len(self.ordered)
+        return tabulate_predicted_speed(self, axes, count, load_factor, tolerance=tolerance)
 
     def tabulate_fuel(
         self, load_factor: float, tolerance: float

@@ -14,71 +14,16 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.displacement import interpolate_loading
-from thalweg.ship.methods.speed_loss import LastTermSign, ShipType, kwon_notes, kwon_speed_loss
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
+from thalweg.ship.models.kwon_speed_loss import KwonSpeedLoss, tabulate_predicted_speed
 from thalweg.ship.models.prestegardshus_speed_loss import PrestegardshusSpeedLoss
 from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_settings
+from thalweg.ship.tables.tabulate import AxisRange, constant_part
 
 _HIGHEST: Final = 100.0 * KNOT  # ordered speed of a ship whose file sets no other [m/s]
-
-
-@dataclass(frozen=True)
-class KwonSpeedLoss:
-    """Kwon's speed loss for the particulars of a ship (see `kwon_speed_loss`).
-
-    Attributes
-    ----------
-    length : Between perpendiculars [m].
-    loading : Displacement and condition.
-    sign, ship_type, classes : Choices of the method.
-    """
-
-    length: float
-    block_coefficient: float
-    loading: Loading
-    sign: LastTermSign = "plus"
-    ship_type: ShipType = "other"
-    classes: bool = False
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """Conditions read."""
-        return frozenset({"wind_speed", "wind_angle"})
-
-    def axes(self, size: int) -> list[AxisRange]:
-        """Axes of tables: wind speed and angle."""
-        return [replace(DEFAULT_AXES["wind_speed"], size=size), wind_angle_axis(self)]
-
-    def share(self, conditions: Conditions, speed: FloatArray) -> FloatArray:
-        """Share of the calm-water speed [m/s] that is lost, 0 to 0.99."""
-        return kwon_speed_loss(
-            conditions.wind_speed,
-            conditions.wind_angle,
-            speed=speed,
-            length=self.length,
-            block_coefficient=self.block_coefficient,
-            displacement_volume=self.loading.displacement_at(conditions.load_factor),
-            loading=self.loading.condition,
-            ship_type=self.ship_type,
-            sign=self.sign,
-            classes=self.classes,
-            hold=not self.classes,
-        )
-
-    def notes(self, conditions: Conditions) -> list[RangeNote]:
-        """Where the method is used outside its range."""
-        return kwon_notes(
-            conditions.wind_speed,
-            block_coefficient=self.block_coefficient,
-            displacement_volume=self.loading.displacement_at(conditions.load_factor),
-            loading=self.loading.condition,
-            ship_type=self.ship_type,
-        )
 
 
 @runtime_checkable
@@ -190,8 +135,7 @@ class KnownSpeedModel:
     ) -> tuple[tuple[TablePart, ...], TableError]:
         """One constant, or one part over what is read: wind speed and angle, depth."""
         axes, count = known_speed_axes(self, load_factor), len(self.speeds_full)
-        speed = self.speed_through_water
-        return tabulate_settings(speed, axes, count, load_factor, tolerance=tolerance)
+        return tabulate_predicted_speed(self, axes, count, load_factor, tolerance=tolerance)
 
     def tabulate_fuel(
         self, load_factor: float, tolerance: float
@@ -313,11 +257,6 @@ def known_speed_axes(model: KnownSpeedModel, load_factor: float) -> list[AxisRan
     if model.squat is not None:
         axes.append(_depth_axis(model.squat, load_factor, 1025 if model.loss is None else 257))
     return axes
-
-
-def wind_angle_axis(loss: KwonSpeedLoss) -> AxisRange:
-    """Wind angle in steps of 15 degrees, on which the continuous loss is exact."""
-    return AxisRange(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
 
 
 def _depth_axis(squat: SquatModel, load_factor: float, size: int) -> AxisRange:

@@ -16,11 +16,10 @@ from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.engine_plant import EnginePlant
-from thalweg.ship.models.known_speed_model import KwonSpeedLoss
+from thalweg.ship.models.kwon_speed_loss import KwonSpeedLoss, tabulate_predicted_speed
 from thalweg.ship.models.resistance_model import ResistanceModel
 from thalweg.ship.models.resistance_terms import condition_axes
 from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import tabulate_settings
 
 _LARGEST_FROUDE_NUMBER: Final = 0.4  #: Froude number of the fastest calm-water speed considered
 _WIND_CONDITIONS: Final = ("wind_speed", "wind_angle")
@@ -118,8 +117,7 @@ class KwonResistanceModel:
             depth = condition_axes(self.base.balance(load_factor), self.base.limits)["depth"]
             axes.append(replace(depth, size=65))
         count = len(self.speeds(load_factor))
-        speed = self.speed_through_water
-        return tabulate_settings(speed, axes, count, load_factor, tolerance=tolerance)
+        return tabulate_predicted_speed(self, axes, count, load_factor, tolerance=tolerance)
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where methods are used outside their ranges."""

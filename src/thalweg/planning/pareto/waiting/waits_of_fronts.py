@@ -13,10 +13,12 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.planning.single.sheltered_waits import routes_with_one_wait
 from thalweg.route import Route, Track
+from thalweg.route.route import SPEED_NOT_PREDICTED
 
 #: Limits that open with time.
 _OPENING: Final = {
-    codes.REASONS[code] for code in (codes.DEPTH, codes.WAVE_HEIGHT, codes.WIND_SPEED)
+    SPEED_NOT_PREDICTED,
+    *(codes.REASONS[code] for code in (codes.DEPTH, codes.WAVE_HEIGHT, codes.WIND_SPEED)),
 }
 #: By how much waits are lengthened, or else shortened where a limit closes, in turn [s].
 _CHANGES: Final = (

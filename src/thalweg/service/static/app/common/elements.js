@@ -7,7 +7,7 @@ export const REASONS = {
   "nearer to land than the offing": "legs nearer to land than the offing", "no-go zone": "legs through closed areas", "outside the period of the data": "legs after the end of the data",
   "wave height above the limit": "legs with waves above the limit", "wind speed above the limit": "legs with wind above the limit", "no data": "legs over water without data", land: "legs over land",
   "under-keel clearance": "legs over water that is too shallow", "current too strong to hold the course": "legs with a current too strong to hold the course",
-  "outside the range of the ship's table": "legs outside the range of the ship's table", "safety or comfort limit of the ship": "legs beyond a limit of safety or comfort",
+  "weather in which the ship's speed is not known": "legs in weather in which the ship's speed is not known", "safety or comfort limit of the ship": "legs beyond a limit of safety or comfort",
 };
 
 export function h(kind, attributes = {}, ...children) {
