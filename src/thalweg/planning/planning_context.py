@@ -10,8 +10,10 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.core.geodesy import positions_along
 from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.requirements import Requirements, required_under_keel_clearance
+from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate
 from thalweg.sea import Sea
@@ -156,3 +158,16 @@ def performance_table_of(ship: Ship) -> PerformanceTable:
         return ship.tabulate()
     none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
     return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
+
+
+def expected_speed(context: PlanningContext, ends: Sequence[Endpoint], depart: float) -> float:
+    """Return the expected speed [m/s]: of the setting, or the mean of a speed field on the way."""
+    if context.ship.speed_field is None:
+        return float(context.ship.speeds[context.setting])
+    start, goal = ends
+    lat, lon = positions_along(start.lat, start.lon, goal.lat, goal.lon, np.linspace(0, 1, 33))
+    time = np.full(lat.shape, depart)
+    names = sorted(context.ship.needs)
+    speed = context.ship.speed_field(context.sea.sample(names, time, lat, lon), time, lat, lon)
+    known = speed[np.isfinite(speed) & (speed > 0)]
+    return float(known.mean()) if known.size else 1.0

@@ -6,11 +6,12 @@ import math
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import distance, positions_along
+from thalweg.core.geodesy import distance
 from thalweg.core.limits import TIGHTENING, Limits
 from thalweg.core.time import TimeLike, format_time
 from thalweg.core.units import HOUR
@@ -19,7 +20,7 @@ from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea, ship_in_frozen_sea
 from thalweg.planning.network_selection.network_builder import build_network
-from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.planning_context import PlanningContext, expected_speed
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.exceeded_limits import (
     MAX_ROUNDS,
@@ -41,6 +42,7 @@ from thalweg.planning.single.route_candidates import (
     track_from_result,
 )
 from thalweg.planning.single.stretch_result import StretchResult
+from thalweg.planning.single.way_of_seas import along_way_of_seas
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,
     check_times_known,
@@ -192,18 +194,29 @@ def _search_and_refine(
         route = refined_bound_path(context, network, hint, result, route, limits)
         if network.meta.kind != "layered":  # those routes keep to their layers
             route = through_narrow_features(context, route, limits)
+            found = partial(_route_on_network, context, limits, window, ends)
+            route = along_way_of_seas(context, ends, route, found)
     paths = _late_paths(context, network, frozen, limits, (result, route))
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
     route = with_best_waits(context, route, paths, last_departure=window[1])
     notes = network.meta.notes if network.meta.kind == "layered" else ()
-    notes += tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
-    notes += tuple(passing)
+    exceeded = (f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
+    notes = (*notes, *exceeded, *passing)
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     # a limit opens after a wait; against currents the times without waits show as much
     waits = bool(np.any(route.track.wait)) or bool(set(result.refused) - {REASONS[CURRENT]})
     arrival = isochrones(context, network, frozen, route.depart, until, wait=waits)
     return StretchResult(route, result, network, arrival, notes)
+
+
+def _route_on_network(
+    context: PlanningContext, limits: Limits, window: tuple[float, float],
+    ends: tuple[Endpoint, Endpoint], network: Network,
+) -> Route:  # fmt: skip
+    """Return the refined route of a network."""
+    _, result = _search(context, network, limits, window, ends, LastFrozenSea())
+    return refine_track(context, track_from_result(network, result, context.setting), limits)
 
 
 def _late_paths(
@@ -216,8 +229,8 @@ def _late_paths(
     """Return the paths of later departures than that of a route, and of the search it is from."""
     result, route = found
     ship = _ship_on_network(context, network, frozen, limits)
-    start, goal = network.meta.start, network.meta.goal
-    query = ArrivalQuery(start, goal, route.depart, wait=context.voyage.wait)
+    ends = network.meta.start, network.meta.goal
+    query = ArrivalQuery(*ends, route.depart, wait=context.voyage.wait)
 
     def refine(late: SearchResult) -> Route:
         return refine_track(context, track_from_result(network, late, context.setting), limits)
@@ -269,7 +282,7 @@ def _search(
     seas: LastFrozenSea,
 ) -> tuple[FrozenSea, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
-    usual = straight / _expected_speed(context, ends, window[0])
+    usual = straight / expected_speed(context, ends, window[0])
     arrive_by = _deadline_of_search(context, window)
     latest = min(context.data_end, math.inf if arrive_by is None else float(arrive_by))  # type: ignore[arg-type]
     for number in range(seas.first_horizon(network), len(_HORIZONS)):
@@ -318,21 +331,6 @@ def _late_arrival_error(
         context.latest_arrival, result.arrive, window=window[1] > window[0],
         approach=context.approach_times[1],
     )  # fmt: skip
-
-
-def _expected_speed(
-    context: PlanningContext, ends: tuple[Endpoint, Endpoint], depart: float
-) -> float:
-    """Return the expected speed [m/s]: of the setting, or the mean of a speed field on the way."""
-    if context.ship.speed_field is None:
-        return float(context.ship.speeds[context.setting])
-    start, goal = ends
-    lat, lon = positions_along(start.lat, start.lon, goal.lat, goal.lon, np.linspace(0, 1, 33))
-    time = np.full(lat.shape, depart)
-    names = sorted(context.ship.needs)
-    speed = context.ship.speed_field(context.sea.sample(names, time, lat, lon), time, lat, lon)
-    known = speed[np.isfinite(speed) & (speed > 0)]
-    return float(known.mean()) if known.size else 1.0
 
 
 def _run_search(

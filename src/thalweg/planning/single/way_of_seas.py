@@ -1,0 +1,69 @@
+"""The way over the graph of all seas as a route to choose from, where the one found is longer.
+
+A network of a long voyage is too coarse for straits: their lanes and shoals are narrower than its
+edges, so that it may prefer a strait hundreds of miles off. The graph of all seas knows them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Final
+
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import Position
+from thalweg.network import Network, lattice
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways, path_length_and_canals
+from thalweg.route import Route
+from thalweg.route.refinement.better_route import comparison_key
+
+_OVER_GRAPH: Final = 1.015  # ways over the graph are longer than after string pulling
+_SHORTER: Final = 0.997  # share of the length of a route from which on a way is tried
+
+
+def along_way_of_seas(
+    context: PlanningContext,
+    ends: tuple[Endpoint, Endpoint],
+    route: Route,
+    searched: Callable[[Network], Route],
+) -> Route:
+    """Return the better of a route and the one found along the shortest way over the seas.
+
+    Parameters
+    ----------
+    ends : Of the route.
+    route : As evaluated; of a ship that sails the coasts of the world.
+    searched : Returns the refined route of a network; raises `NoRouteError`.
+    """
+    way = _shorter_way(context, ends, float(route.legs["length"].sum()))
+    if way is None:
+        return route
+    places = ((end.lat, end.lon) for end in ends)
+    try:
+        other = searched(lattice(context.chart, *places, along=way))
+    except NoRouteError:
+        return route
+    key = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
+    return min((route, other), key=key)
+
+
+def _shorter_way(
+    context: PlanningContext, ends: tuple[Endpoint, Endpoint], length: float
+) -> list[Position] | None:
+    """Return the waypoints of the way over the seas; None where it is not clearly shorter [m]."""
+    chart = context.chart
+    if context.choice.network != "auto" or not chart.passages or chart.area.width < 360.0:
+        return None
+    seas = replace(Seaways.of_ship_chart(chart), shoals=chart.zones.shoals)
+    try:
+        path = seas.graph_path(*ends)
+        if path_length_and_canals(seas.chart, path)[0] > _OVER_GRAPH * length:
+            return None
+        path = seas.path(*ends, offing=context.needs.limits.offing)
+    except NoRouteError:
+        return None
+    shorter = path_length_and_canals(seas.chart, path)[0] < _SHORTER * length
+    return path if shorter else None
