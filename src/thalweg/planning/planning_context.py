@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -95,6 +95,13 @@ class PlanningContext:
         """
         if isinstance(self.report_progress, FrontProgress):
             self.report_progress.show_front(points, unit)
+
+    def with_stricter_motions(self, share: float) -> PlanningContext:
+        """Return the context of searches with limits of motions that are stricter by a share."""
+        if share == 0.0 or self.table.safety is None:
+            return self
+        speed = replace(self.table, motions_margin=share)
+        return replace(self, tables=replace(self.tables, speed=speed))
 
     @property
     def table(self) -> PerformanceTable:

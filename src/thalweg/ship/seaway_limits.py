@@ -202,13 +202,19 @@ class SafetyLimits:
         shares = [limit.ratio_to_limit(self.hull, **at) for limit in self.motions]
         return np.max(shares, axis=0) if shares else np.zeros(speed.shape)
 
-    def kernel_arrays(self) -> dict[str, Any]:
-        """Return the fields of `thalweg.kernels.leg.table_lookup.TableArrays` that belong to it."""
+    def kernel_arrays(self, margin: float = 0.0) -> dict[str, Any]:
+        """Return the fields of `thalweg.kernels.leg.table_lookup.TableArrays` that belong to it.
+
+        Parameters
+        ----------
+        margin : Share by which the limits of motions are stricter.
+        """
         found: dict[str, Any] = {}
         if self.situation_limits is not None:
             found["safety"] = self._numbers
         if self.motions:
-            found["motions"], found["motion_grid"] = self._table
+            per_metre, found["motion_grid"] = self._table
+            found["motions"] = per_metre / np.float32(1.0 - margin)
         return found
 
     @cached_property

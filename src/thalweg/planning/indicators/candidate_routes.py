@@ -36,6 +36,7 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
+from thalweg.planning.indicators.fastest_plan import fastest_of_plan
 from thalweg.planning.indicators.passage_ways import way_by_passage
 from thalweg.planning.indicators.ways_not_offered import canal_notes
 from thalweg.planning.network_selection.route_alternatives import (
@@ -100,16 +101,34 @@ def berth_to_berth_candidates(
 def _feasible_candidates(
     trade_off: TradeOffContext, alternatives: list[RouteAlternative]
 ) -> tuple[list[Route], list[str]]:
-    """Return the candidates that keep the limits, searched with limits as tight as that takes."""
+    """Return the candidates that keep the limits, searched with limits as tight as that takes.
+
+    Where the fastest breaks a limit, stricter ones are tried as well: the fastest that keeps the
+    limits may be hours before the slower candidates that do.
+    """
+    context, latest = trade_off.context, trade_off.context.latest_arrival
+    found: list[tuple[list[Route], list[str]]] = []  # with a route that keeps the limits
     for step in NETWORK_STEPS:
-        own = replace(trade_off, limits=trade_off.context.needs.limits.tightened(TIGHTENING[step]))
-        routes, notes, refused = candidate_routes(own, alternatives)
-        latest = trade_off.context.latest_arrival
+        own = replace(
+            trade_off,
+            limits=context.needs.limits.tightened(TIGHTENING[step]),
+            context=context.with_stricter_motions(TIGHTENING[step].share),
+        )
+        try:
+            routes, notes, refused = candidate_routes(own, alternatives)
+        except NoRouteError:
+            if found:  # too strict
+                break
+            raise
         kept = [route for route in routes if route.feasible and route.arrive <= latest + 1.0]
-        notes += canal_notes(own.context.chart, routes, kept or routes[:1], latest, refused)
-        if kept or trade_off.interrupt_guard.stopped():
+        notes += canal_notes(context.chart, routes, kept or routes[:1], latest, refused)
+        if kept:
+            found.append((kept, notes))
+        if routes[0].feasible or trade_off.interrupt_guard.stopped():
             break
-    return kept or routes[:1], list(dict.fromkeys((*trade_off.context.needs.notes, *notes)))
+    found = found or [(routes[:1], notes)]
+    kept, notes = min(found, key=lambda one: min(route.time_h for route in one[0]))
+    return kept, list(dict.fromkeys((*context.needs.notes, *notes)))
 
 
 def candidate_routes(
@@ -187,6 +206,8 @@ class _Candidates:
         """Add the fastest route of an alternative; return it without water that has no data."""
         own = with_objective(self.trade_off, Objective.of("time", currency=self.currency))
         alternative, _horizon, route = fastest_in_known_water(own, alternative)
+        if not self.fastest_routes:
+            route = fastest_of_plan(self.context, self.trade_off.ends, route)
         self.routes.append(self._scored(route.track))
         self.fastest_routes.append(self.routes[-1])
         self.best.setdefault("time", self.routes[-1])

@@ -102,9 +102,10 @@ def plan_stretch(
                 continue
             networks[finer] = without_unknown_edges(context, network, gaps)
         limits = context.needs.limits.tightened(TIGHTENING[step])
+        stricter = context.with_stricter_motions(TIGHTENING[step].share)
         try:
             tried = _search_and_refine(
-                context, networks[finer], (start, goal), window, limits, seas
+                stricter, networks[finer], (start, goal), window, limits, seas
             )
         except NoRouteError as error:
             refusal = refusal or error

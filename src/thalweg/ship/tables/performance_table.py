@@ -41,6 +41,8 @@ class PerformanceTable:
         What turns the sum into the value; without it the sum is the value.
     safety : SafetyLimits, optional
         What the ship must not do in waves; kernels refuse it.
+    motions_margin : float
+        Share by which kernels take the limits of motions as stricter.
     """
 
     parts: tuple[TablePart, ...]
@@ -49,6 +51,7 @@ class PerformanceTable:
     error: TableError
     finish: OutputCurve | None = None
     safety: SafetyLimits | None = None
+    motions_margin: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.parts:
@@ -171,5 +174,5 @@ class PerformanceTable:
             values=np.concatenate([part.values.ravel() for part in self.parts]),
             squared_height_limit=stops if np.isfinite(stops).any() else np.empty(0),
             **({} if self.finish is None else self.finish.kernel_arrays()),
-            **({} if self.safety is None else self.safety.kernel_arrays()),
+            **({} if self.safety is None else self.safety.kernel_arrays(self.motions_margin)),
         )
