@@ -21,7 +21,8 @@ from thalweg.route import Route
 from thalweg.route.refinement.better_route import comparison_key
 
 _OVER_GRAPH: Final = 1.015  # ways over the graph are longer than after string pulling
-_SHORTER: Final = 0.997  # share of the length of a route from which on a way is tried
+#: Share of the length of a route from which on a way is tried: a way does not count traffic lanes.
+_SHORTER: Final = 0.98
 
 
 def along_way_of_seas(
