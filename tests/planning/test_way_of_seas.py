@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.limits import Limits
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import world_chart
@@ -18,12 +19,14 @@ OFF_THE_CAPE = Endpoint("35.0000S 19.0000E", -35.0, 19.0, 0.0)
 OFF_QINGDAO = Endpoint("35.8000N 121.0000E", 35.8, 121.0, 0.0)
 
 
-def _context(network: str = "auto") -> SimpleNamespace:
+def _context(network: str = "auto", *, way_is_open: bool = False) -> SimpleNamespace:
     return SimpleNamespace(
         chart=world_chart(),
         choice=SimpleNamespace(network=network),
         voyage=SimpleNamespace(objective="distance"),
         needs=SimpleNamespace(limits=SimpleNamespace(offing=2.0 * NAUTICAL_MILE)),
+        setting=0,
+        evaluate=lambda track: SimpleNamespace(feasible=way_is_open),
     )
 
 
@@ -53,7 +56,9 @@ def test_a_route_by_a_strait_that_is_far_off_is_compared_with_the_way_by_sunda()
         return _route(7780.0)
 
     by_lombok = _route(8240.0)  # as the coarse network finds it
-    found = along_way_of_seas(_context(), (OFF_THE_CAPE, OFF_QINGDAO), by_lombok, searched)
+    found = along_way_of_seas(
+        _context(), (OFF_THE_CAPE, OFF_QINGDAO), by_lombok, searched, Limits()
+    )
     assert found is not by_lombok
     assert found.legs["length"].sum() == pytest.approx(7780.0 * NAUTICAL_MILE)
     (network,) = networks
@@ -71,8 +76,8 @@ def test_a_longer_route_along_the_way_or_none_changes_nothing(monkeypatch):
         raise NoRouteError("No route.", "A test.", "None.")
 
     ends = OFF_THE_CAPE, OFF_QINGDAO
-    assert along_way_of_seas(_context(), ends, given, refused) is given
-    assert along_way_of_seas(_context(), ends, given, lambda network: _route(8300.0)) is given
+    assert along_way_of_seas(_context(), ends, given, refused, Limits()) is given
+    assert along_way_of_seas(_context(), ends, given, lambda own: _route(8300.0), Limits()) is given
 
 
 @pytest.mark.parametrize(("network", "miles"), [("auto", 7700.0), ("globe", 8240.0)])
@@ -81,4 +86,30 @@ def test_no_way_is_searched_where_the_route_is_short_or_the_network_was_chosen(n
         raise AssertionError("searched")
 
     given, ends = _route(miles), (OFF_THE_CAPE, OFF_QINGDAO)
-    assert along_way_of_seas(_context(network), ends, given, never) is given
+    assert along_way_of_seas(_context(network), ends, given, never, Limits()) is given
+
+
+@pytest.mark.parametrize(("way_is_open", "miles"), [(True, 7775.0), (False, 8235.0)])
+def test_the_way_itself_is_refined_where_the_network_along_it_is_too_coarse(
+    monkeypatch, way_is_open, miles
+):
+    refined = []
+
+    def refine(context, track, limits):
+        refined.append(track)
+        return _route(7775.0)
+
+    monkeypatch.setattr(way_of_seas, "lattice", lambda chart, *places, along: along)
+    monkeypatch.setattr(way_of_seas, "refine_track", refine)
+    found = along_way_of_seas(
+        _context(way_is_open=way_is_open),
+        (OFF_THE_CAPE, OFF_QINGDAO),
+        _route(8240.0),
+        lambda network: _route(8235.0),
+        Limits(),
+    )
+    assert found.legs["length"].sum() == pytest.approx(miles * NAUTICAL_MILE)
+    assert len(refined) == way_is_open
+    for track in refined:
+        assert (track.lat[0], track.lon[0]) == (-35.0, 19.0)
+        assert (track.lat[-1], track.lon[-1]) == (35.8, 121.0)

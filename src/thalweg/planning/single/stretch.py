@@ -196,7 +196,7 @@ def _search_and_refine(
         if network.meta.kind != "layered":  # those routes keep to their layers
             route = through_narrow_features(context, route, limits)
             found = partial(_route_on_network, context, limits, window, ends)
-            route = along_way_of_seas(context, ends, route, found)
+            route = along_way_of_seas(context, ends, route, found, limits)
     paths = _late_paths(context, network, frozen, limits, (result, route))
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []

@@ -6,18 +6,23 @@ edges, so that it may prefer a strait hundreds of miles off. The graph of all se
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Final
 
+import numpy as np
+
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import Position
+from thalweg.core.geodesy import Position, line_length
+from thalweg.core.limits import Limits
 from thalweg.network import Network, lattice
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
-from thalweg.route import Route
+from thalweg.planning.single.route_candidates import refine_track
+from thalweg.route import Route, Track
 from thalweg.route.refinement.better_route import comparison_key
 
 _OVER_GRAPH: Final = 1.015  # ways over the graph are longer than after string pulling
@@ -30,25 +35,33 @@ def along_way_of_seas(
     ends: tuple[Endpoint, Endpoint],
     route: Route,
     searched: Callable[[Network], Route],
+    limits: Limits,
 ) -> Route:
     """Return the better of a route and the one found along the shortest way over the seas.
+
+    Where the network along the way is too coarse for it as well, the way itself is refined.
 
     Parameters
     ----------
     ends : Of the route.
     route : As evaluated; of a ship that sails the coasts of the world.
     searched : Returns the refined route of a network; raises `NoRouteError`.
+    limits : Of the refinement.
     """
     way = _shorter_way(context, ends, float(route.legs["length"].sum()))
     if way is None:
         return route
-    places = ((end.lat, end.lon) for end in ends)
-    try:
-        other = searched(lattice(context.chart, *places, along=way))
-    except NoRouteError:
-        return route
     key = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
-    return min((route, other), key=key)
+    places = ((end.lat, end.lon) for end in ends)
+    with contextlib.suppress(NoRouteError):
+        route = min((route, searched(lattice(context.chart, *places, along=way))), key=key)
+    if line_length(way) < _SHORTER * float(route.legs["length"].sum()):
+        lat, lon = np.array(way, float).T
+        settings = np.full(len(lat) - 1, context.setting)
+        track = Track(lat, lon, route.depart, np.zeros(len(lat)), settings)
+        if context.evaluate(track).feasible:
+            route = min((route, refine_track(context, track, limits)), key=key)
+    return route
 
 
 def _shorter_way(
