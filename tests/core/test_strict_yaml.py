@@ -16,6 +16,13 @@ from thalweg.planning.voyage import Voyage
         ("start: !!python/object:os.system x\n", "line 1"),
         ("start: [1, 2\n", "line 2"),
         ("start: 2020-13-45\n", "month"),
+        (
+            "a: 1\nhull: {depth_m: 19.1, draught_m: 11,8, breadth_m: 30}",
+            "line 2.*'draught_m: 11.8'",
+        ),
+        ("{hull: {draught_m: 11,08}}", "Was a decimal comma meant.*'draught_m: 11.08'"),
+        ("tasks: {work: {min_m: -1,5, max_m: 2,5}}", "'min_m: -1.5'"),
+        ("places: {bridge: 45,5}", "'bridge: 45.5'"),
     ],
 )
 def test_faults_are_refused_with_the_line(tmp_path, text, message):

@@ -50,6 +50,14 @@ def test_dates_and_hours_that_do_not_exist(value):
         parse_time(value)
 
 
+@pytest.mark.parametrize("offset", ["+25:00", "-24:00", "+15:00", "-12:30"])
+def test_offsets_that_no_time_zone_has(offset):
+    """The first was answered with the words of Python on 'timedelta'."""
+    with pytest.raises(InputError, match=r"Offsets from UTC are -12:00 to \+14:00") as caught:
+        parse_time(f"2026-03-10T01:00{offset}")
+    assert "timedelta" not in str(caught.value)
+
+
 def test_times_go_out_as_they_came_in():
     assert format_time(parse_time("2026-02-28T23:59:59Z")) == "2026-02-28T23:59:59Z"
     assert to_datetime64(parse_time("2026-01-01T00:00Z")) == np.datetime64("2026-01-01T00:00")

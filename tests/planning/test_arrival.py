@@ -1,6 +1,8 @@
 """A given time of arrival: by the speed, by the departure, and what is held on the way."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
+from thalweg.planning.arrival_planner import _on_time
 from thalweg.planning.report.plan_summary import quality_text
 from thalweg.planning.request.requirements import period_of_data
 
@@ -148,3 +151,12 @@ def test_a_voyage_file_keeps_the_arrival(tmp_path) -> None:
     voyage = Voyage(**ENDS, depart=DEPART, arrive=DEPART + 9 * HOUR, hold="ground")
     voyage.save(tmp_path / "voyage.yaml")
     assert Voyage.load(tmp_path / "voyage.yaml") == voyage
+
+
+def test_words_on_an_arrival_that_can_only_be_early():
+    request: Any = SimpleNamespace(arrive=20.0 * 3600.0)
+    plan: Any = SimpleNamespace(best=SimpleNamespace(arrive=15.1 * 3600.0))
+    assert _on_time(plan, request) == (
+        "the ship arrives 4 h 54 min before the requested time; leaving a little later or sailing "
+        "a little slower, it would arrive after that time"
+    )

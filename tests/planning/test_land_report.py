@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, evaluate
+from thalweg.chart.passages import Passage
 from thalweg.planning.report.land_report import closed_passage_notes, nearest_land_notes
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.request.chart_restrictions import exclude_closed_canals
@@ -111,5 +112,11 @@ def test_the_nearest_land_at_sea_is_the_figure_of_the_table():
     assert near.startswith("Close to land: 0.2 nm off in the approach of a port, from 0.0170N")
     assert at_sea.startswith("Nearest land: 3.0 nm off at sea, from 0.0000N")
     assert indicator_value(route, "land_distance_nm") == pytest.approx(3.0, abs=0.05)
+    line = ((0.017, -0.1), (0.017, 0.2))
+    strait = Passage(
+        "Narrow Strait", "trade", line, 370.0, closing_line=((0.02, 0.05), (0.01, 0.05))
+    )
+    (inside,) = nearest_land_notes(replace(chart, passages=(strait,)), plain)
+    assert inside.startswith("Close to land: 0.2 nm off in a passage (Narrow Strait), from 0.0170N")
     farther = replace(plain, legs={**plain.legs, "leg_kind": kind[::-1]})
     assert "approach" not in nearest_land_notes(chart, farther)[0]

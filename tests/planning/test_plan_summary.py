@@ -354,11 +354,22 @@ def test_an_evaluated_route_states_the_dues_of_the_ship_not_the_mean_of_all(answ
 
 
 @pytest.mark.parametrize(
-    ("least", "text"), [(0.97, "0.9 m"), (1.0, "1.0 m"), (0.99995, "1.0 m"), (-3.16, "-3.2 m")]
+    ("least", "text"), [(0.97, "0.9 m"), (1.0, "1.0 m"), (0.99995, "1.0 m"), (-3.16, "-3.16 m")]
 )
 def test_the_least_clearance_is_never_rounded_up(least, text):
-    route = SimpleNamespace(min_ukc_m=least, samples={"under_keel_clearance": np.full(3, np.nan)})
+    samples = {"under_keel_clearance": np.full(3, np.nan)}
+    route = SimpleNamespace(min_ukc_m=least, samples=samples, violations=())
     assert least_clearance_text(route) == f"least under-keel clearance {text}"
+
+
+@pytest.mark.parametrize(("least", "text"), [(-1.106, "-1.11"), (1.16, "1.16"), (1.1999, "1.1999")])
+def test_the_least_clearance_is_written_as_in_the_limit_that_is_not_kept(least, text):
+    """One line said -1.2 m, the other -1.11 m, of the same place and time."""
+    shoal = Violation("under-keel clearance", 0.0, 53.0, -3.0, least, 1.2)
+    samples = {"under_keel_clearance": np.full(3, np.nan)}
+    route = SimpleNamespace(min_ukc_m=least, samples=samples, violations=(shoal,))
+    assert least_clearance_text(route) == f"least under-keel clearance {text} m"
+    assert f"({text} m, limit 1.20" in str(shoal)
 
 
 def test_kept_limits_name_safety_and_comfort_in_waves():

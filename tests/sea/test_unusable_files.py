@@ -82,7 +82,10 @@ def test_times_without_dates_and_strange_calendars() -> None:
         [0.0, 1.0, 2.0],
         {"units": "days since 2001-02-27", "calendar": "360_day"},
     )
-    refused("360_day", noleap)
+    error = refused("the calendar '360_day'", noleap)
+    assert "standard, gregorian, proleptic_gregorian" in error.possible
+    assert "ds.convert_calendar('standard', dim='time', align_on='date')" in error.remedy
+    assert "duplicates" not in str(error)
 
 
 def test_two_candidates_are_listed_and_can_be_chosen() -> None:

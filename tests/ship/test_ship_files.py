@@ -467,3 +467,17 @@ def test_a_misspelt_key_of_one_task_is_refused_with_the_nearest_known_one():
     }
     with pytest.raises(InputError, match=r"is not a key of 'tasks'.*'max_pitch_deg'"):
         Ship.from_dict(data)
+
+
+def test_a_speed_that_cannot_be_ordered_is_refused_with_the_speeds_of_the_ship():
+    """Only "from 0 to 100 kn" was answered, which is the same for all ships."""
+    hull = {"length_between_perpendiculars_m": 174.0, "breadth_m": 32.2, "draught_m": 11.8}
+    engine = {"reference_speed_kn": 14.0, "reference_power_kw": 8200.0, "power_kw": 9500.0}
+    ship = Ship.from_dict(
+        {"name": "tanker", "hull": hull, "speeds_kn": [6, 8, 12], "engine": engine}
+    )
+    with pytest.raises(InputError) as caught:
+        ship.with_speeds(-3.0 * KNOT)
+    assert caught.value.possible == (
+        "The ship file gives 6 to 12 kn; other speeds are above 0 and at most 100 kn."
+    )

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+import re
+from itertools import pairwise
+from typing import Any, Final
 
 import yaml
 
 from thalweg.core.errors import InputError
 
 MAX_DEPTH = 30  #: levels of nesting; the deepest file of the documentation has six
+_WHOLE_NUMBER: Final = re.compile(r"[-+]?[0-9]+")
+_DIGITS: Final = re.compile(r"[0-9]+")
 
 
 class StrictLoader(yaml.SafeLoader):
@@ -45,7 +49,8 @@ class StrictLoader(yaml.SafeLoader):
         return value
 
     def construct_mapping(self, node: Any, deep: bool = False) -> Any:
-        """Refuse keys that are given twice."""
+        """Refuse decimal commas, and keys that are given twice."""
+        _refuse_decimal_comma(node)
         seen: set[str] = set()
         for key, _ in node.value:
             word = key.value if isinstance(key.value, str) else None
@@ -56,6 +61,26 @@ class StrictLoader(yaml.SafeLoader):
             if word is not None:
                 seen.add(word)
         return super().construct_mapping(node, deep=deep)
+
+
+def _refuse_decimal_comma(node: Any) -> None:
+    """Refuse ``{key: 11,8}``, which YAML reads as the key with 11 and a key 8 without a value."""
+    for (key, value), (digits, nothing) in pairwise(node.value):
+        if (
+            nothing.value == ""
+            and isinstance(value.value, str)
+            and _WHOLE_NUMBER.fullmatch(value.value)
+            and isinstance(digits.value, str)
+            and _DIGITS.fullmatch(digits.value)
+        ):
+            given = f"{key.value}: {value.value},{digits.value}"
+            raise yaml.constructor.ConstructorError(
+                None,
+                None,
+                f"{given!r} has a comma, which begins the next key",
+                digits.start_mark,
+                f"Was a decimal comma meant? Write '{key.value}: {value.value}.{digits.value}'.",
+            )
 
 
 def _value_error(node: Any, why: str) -> yaml.MarkedYAMLError:
@@ -106,15 +131,15 @@ def parse_yaml(text: str, kind: str, source: str) -> Any:
     try:
         return yaml.load(text, Loader=StrictLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as problem:
-        line, what = "", str(problem)[:120]
+        line, what, remedy = "", str(problem)[:120], ""
         if isinstance(problem, yaml.YAMLError):
             what = "it is not YAML"
         if isinstance(problem, yaml.MarkedYAMLError):
             line = f" (line {problem.problem_mark.line + 1})" if problem.problem_mark else ""
-            what = problem.problem or what
+            what, remedy = problem.problem or what, problem.note or ""
         raise InputError(
             f"The {kind} file {source} cannot be read{line}: {what}.",
             f"{kind.capitalize()} files are YAML: 'key: value' lines, sections indented by spaces.",
-            "Correct that line." if line else "Correct it.",
+            remedy or ("Correct that line." if line else "Correct it."),
             file=source,
         ) from None

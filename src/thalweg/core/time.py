@@ -16,6 +16,7 @@ from thalweg.core.units import DAY, MINUTE
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _NANOSECOND_YEARS: Final = 9.2e9  #: [s] from 1970 to the limits of nanoseconds, in 1678 and 2262
+_LEAST_OFFSET, _MOST_OFFSET = timedelta(hours=-12), timedelta(hours=14)  # of time zones
 _EARLIEST, _LATEST = -62_135_596_800.0, 253_402_300_799.0  # years 1 to 9999
 
 
@@ -94,8 +95,10 @@ def _from_datetime64(value: np.datetime64) -> float:
 
 def _parse_text(text: str) -> datetime:
     try:
-        return datetime.fromisoformat(text.strip())
+        moment = datetime.fromisoformat(text.strip())
     except ValueError as error:
+        if str(error).startswith("offset must be"):
+            raise _offset_error(text) from None
         in_form = re.match(r"\s*\d{4}-\d{2}-\d{2}($|[T\s]+\d{2}:\d{2})", text) is not None
         raise InputError(
             f"{text!r} is not a time" + (f": {error}." if in_form else "."),
@@ -103,6 +106,19 @@ def _parse_text(text: str) -> datetime:
             "Give a date and time that exist." if in_form else "Write the time in this form.",
             value=text,
         ) from None
+    offset = moment.utcoffset()
+    if offset is not None and not _LEAST_OFFSET <= offset <= _MOST_OFFSET:
+        raise _offset_error(text)
+    return moment
+
+
+def _offset_error(text: str) -> InputError:
+    return InputError(
+        f"{text!r} is not a time: no time zone has that offset.",
+        "Offsets from UTC are -12:00 to +14:00; Z is UTC.",
+        "Give the time in UTC, such as 2026-01-01T06:30Z.",
+        value=text,
+    )
 
 
 def format_time(seconds: float) -> str:

@@ -339,6 +339,6 @@ def _on_time(plan: Plan, request: ArrivalRequest) -> str:
     if early <= 2.0 * _EARLY:
         return "the ship arrives at the requested time"
     return (
-        f"the ship arrives {duration_text(early)} before the requested time; the next later "
-        f"arrival is after it ({early / HOUR:.1f} h are left)"
+        f"the ship arrives {duration_text(early)} before the requested time; leaving a "
+        "little later or sailing a little slower, it would arrive after that time"
     )

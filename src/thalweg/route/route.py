@@ -70,11 +70,15 @@ class Violation:
         when = f" on {utc_text(self.time)}" if np.isfinite(self.time) else ""
         text = f"{self.reason} at {place}{when}"
         if np.isfinite(self.value) and np.isfinite(self.limit):
-            units = (unit for start, unit in _UNITS.items() if self.reason.startswith(start))
-            unit, name = next(units, (1.0, ""))
-            value, limit = _distinct(self.value / unit, self.limit / unit)
+            value, limit, name = self.number_texts()
             text += f" ({value}{name}, limit {limit}{name})"
         return text
+
+    def number_texts(self) -> tuple[str, str, str]:
+        """Return value and limit as texts that differ, and the name of their unit."""
+        units = (unit for start, unit in _UNITS.items() if self.reason.startswith(start))
+        unit, name = next(units, (1.0, ""))
+        return *_distinct(self.value / unit, self.limit / unit), name
 
     def as_dict(self) -> dict[str, Any]:
         """Return the violation as plain data for JSON.

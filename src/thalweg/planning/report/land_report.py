@@ -31,7 +31,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 from thalweg.route import Route
 from thalweg.route.passages_used import passages_used
-from thalweg.route.referee.land_clearance import least_land_clearance
+from thalweg.route.referee.land_clearance import LandClearance, least_land_clearance
 from thalweg.route.route_tables import LEG_KINDS
 
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
@@ -39,6 +39,8 @@ _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are 
 NEAREST_LAND: Final = "Nearest land"  #: a note on it begins so
 CLOSE_TO_LAND: Final = "Close to land"  #: ... or so, where it is nearer than `_CLOSE`
 _CLOSE: Final = 0.25 * NAUTICAL_MILE
+_STEP_OF_LINE: Final = 0.1 * NAUTICAL_MILE
+_BESIDE_LINE: Final = 0.5 * NAUTICAL_MILE  # positions so near the line of a passage are in it
 PASSES: Final = "Passes "  #: one on a named passage
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
@@ -75,13 +77,27 @@ def nearest_land_notes(chart: Chart, route: Route) -> list[str]:
     near = least_land_clearance(chart, route.track, approach)
     if near is not None and at_sea is not None and near.distance >= at_sea.distance:
         near = None
+    words = _water_words(chart, route, at_sea)
     return [
         f"{CLOSE_TO_LAND if one.distance < _CLOSE else NEAREST_LAND}: "
         f"{one.distance / NAUTICAL_MILE:.1f} nm off {where}, from "
         f"{format_position(one.lat, one.lon)}{time_of_passing(route, one.leg, one.lat, one.lon)}."
-        for one, where in ((near, "in the approach of a port"), (at_sea, "at sea"))
+        for one, where in ((near, "in the approach of a port"), (at_sea, words))
         if one is not None and one.distance < _NEAR
     ]
+
+
+def _water_words(chart: Chart, route: Route, nearest: LandClearance | None) -> str:
+    """Return "at sea", or the name of the passage in which a route is nearest to land."""
+    if nearest is None or nearest.distance >= _NEAR:
+        return "at sea"
+    for passage in passages_used(chart, route):
+        line = np.array(passage.line)
+        lat, lon, _part = densify(line[:, 0], line[:, 1], _STEP_OF_LINE)
+        off = float(np.min(distance(lat, lon, nearest.lat, nearest.lon)))
+        if off < np.fmax(2.0 * passage.half_width, _BESIDE_LINE):
+            return f"in a passage ({passage.name})"
+    return "at sea"
 
 
 def time_of_passing(route: Route, leg: int, lat: float, lon: float) -> str:

@@ -13,6 +13,7 @@ from thalweg.chart.canals import canals_with_dues
 from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
+from thalweg.kernels import codes
 from thalweg.planning.report.depth_report import CHECK_DEPTH
 from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.waiting_report import WAITS
@@ -32,6 +33,8 @@ _WAVES = "sea_surface_wave_significant_height"
 _WIND = ("eastward_wind", "northward_wind")
 _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
+_UNDER_KEEL_CLEARANCE: Final = codes.REASONS[codes.DEPTH]
+_SAME_CLEARANCE: Final = 0.005  # [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SOURCES: Final = {  # other sources of prices by their own name
     "request": "given",
@@ -265,12 +268,19 @@ def least_clearance_text(route: Route) -> str:
     least, clearance = route.min_ukc_m, route.samples["under_keel_clearance"]
     if least is None:
         return "not known: no depth in the data"
-    metres = math.floor(10.0 * (least + 1e-4)) / 10.0  # never more than there is
+    text = f"least under-keel clearance {_clearance_text(route, least)} m"
     if not np.isfinite(clearance).any():
-        return f"least under-keel clearance {metres:.1f} m"
+        return text
     at = int(np.nanargmin(clearance))
-    where = f" {_place(route, at)}" if clearance[at] <= least + 0.05 else ""
-    return f"least under-keel clearance {metres:.1f} m{where}"
+    return f"{text} {_place(route, at)}" if clearance[at] <= least + 0.05 else text
+
+
+def _clearance_text(route: Route, least: float) -> str:
+    """Return the least clearance [m] as its violation states it, else never more than there is."""
+    for one in route.violations:
+        if one.reason == _UNDER_KEEL_CLEARANCE and abs(one.value - least) < _SAME_CLEARANCE:
+            return one.number_texts()[0]
+    return f"{math.floor(10.0 * (least + 1e-4)) / 10.0:.1f}" if least >= -1e-4 else f"{least:.2f}"
 
 
 def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:

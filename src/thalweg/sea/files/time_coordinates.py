@@ -54,7 +54,7 @@ def read_times(array: Any, source: str) -> FloatArray:
             raise _time_fault(source, name, f"cannot be decoded ({error})") from error
     if array.dtype.kind != "M":
         calendar = array.attrs.get("calendar", array.encoding.get("calendar", "unknown"))
-        raise _time_fault(source, name, f"uses the calendar {calendar!r}, which has no real dates")
+        raise _calendar_fault(source, name, str(calendar))
     stamps = np.asarray(array.values).astype("datetime64[us]")  # nanoseconds end in 2262
     if np.isnat(stamps).any():
         raise _time_fault(source, name, "has missing values")
@@ -86,6 +86,22 @@ def _check_zone(units: str, source: str, name: str) -> None:
         raise _time_fault(
             source, name, f"has the units {units!r}: the time zone {zone[1]!r} is not converted"
         )
+
+
+def _calendar_fault(source: str, name: str, calendar: str) -> DatasetError:
+    return DatasetError(
+        f"{source}: the time axis {name!r} uses the calendar {calendar!r}, which has days that do "
+        "not exist, or leaves out days that do.",
+        f"The calendars with the days of a voyage are {', '.join(_REAL_CALENDARS)}.",
+        "Convert the file first, for example with xarray (and cftime): "
+        f"ds.convert_calendar('standard', dim={name!r}{_alignment(calendar)}).",
+        file=source,
+    )
+
+
+def _alignment(calendar: str) -> str:
+    """Return the argument that xarray requires for years of 360 days."""
+    return ", align_on='date'" if calendar == "360_day" else ""
 
 
 def _time_fault(source: str, name: str, fault: str) -> DatasetError:

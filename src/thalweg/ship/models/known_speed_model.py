@@ -175,7 +175,7 @@ class KnownSpeedModel:
             high = own[-1] if len(own) > 1 else _HIGHEST
         possible = np.isfinite(speeds) & (speeds > 0)
         if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
-            raise _speed_out_of_range_error(speeds, low, high)
+            raise _speed_out_of_range_error(speeds, low, high, own)
         full, empty = (np.interp(speeds, own, column) for column in rows[:2])
         if name != "table":  # beyond the settings both grow as the speed does
             beyond = speeds / np.clip(speeds, own[0], own[-1])
@@ -270,11 +270,21 @@ def _shape(conditions: Conditions, index: NDArray[np.intp]) -> tuple[int, ...]:
     return np.broadcast_shapes(conditions.shape, index.shape)
 
 
-def _speed_out_of_range_error(speeds: FloatArray, low: float, high: float) -> InputError:
+def _speed_out_of_range_error(
+    speeds: FloatArray, low: float, high: float, own: FloatArray
+) -> InputError:
+    """Return the error for speeds outside what is possible, with the speeds of the ship file."""
     listed = ", ".join(f"{s / KNOT:g}" for s in speeds)
+    possible = f"Its calm-water speeds run from {low / KNOT:g} to {high / KNOT:g} kn."
+    if low == 0.0:
+        ends = dict.fromkeys((f"{own[0] / KNOT:.4g}", f"{own[-1] / KNOT:.4g}"))
+        possible = (
+            f"The ship file gives {' to '.join(ends)} kn; "
+            f"other speeds are above 0 and at most {high / KNOT:g} kn."
+        )
     return InputError(
         f"The ship cannot be ordered to {listed} kn.",
-        f"Its calm-water speeds run from {low / KNOT:g} to {high / KNOT:g} kn.",
+        possible,
         "Give speeds in that range.",
         value=listed,
     )
