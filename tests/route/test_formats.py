@@ -80,6 +80,41 @@ def test_waits_and_ordered_speeds_come_back(tmp_path, suffix):
     assert ordered.waiting_h == pytest.approx(again.waiting_h)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "lat,lon\n37 53.5N,23 35.0E\n35 24.0S,25 09.0W\n",
+        "lat;lon\n37 53,5N;23 35,0E\n35-24,0 S;25-09,0 W\n",
+        "lat\tlon\nN37 53.5\tE023 35\nS35 24\tW025 09\n",
+        "lat;lon\n37°53,5'N;23°35,0'E\n35°24'S;25°09'W\n",
+    ],
+)
+def test_csv_positions_in_degrees_and_minutes(tmp_path, text):
+    """They were refused as no numbers, though places of the command line may be written so."""
+    path = tmp_path / "a.csv"
+    path.write_text(text, encoding="utf-8")
+    track = read_track(path, depart=0)
+    assert track.lat.tolist() == pytest.approx([37.0 + 53.5 / 60.0, -35.4])
+    assert track.lon.tolist() == pytest.approx([23.0 + 35.0 / 60.0, -25.15])
+    path.write_text("lat,lon\n37 63.5N,23 35.0E\n35 24.0S,25 09.0W\n")
+    with pytest.raises(InputError, match="60 or more minutes"):
+        read_track(path, depart=0)
+
+
+@pytest.mark.parametrize("ending", ["csv", "gpx", "geojson"])
+def test_names_of_waypoints_are_kept(tmp_path, ending):
+    """Written of a CSV, a route had the names WP 1 to WP 3."""
+    path = tmp_path / "ferry.csv"
+    rows = "Piraeus,37.892,23.583\n,36.8,24.033\nHeraklion,35.383,25.15\n"
+    path.write_text(f"Name,lat,lon\n{rows}")
+    for _ in range(2):  # read from another program, and from Thalweg
+        found = evaluate(read_track(path, depart=0), ship=ship(6.0), sea=Sea.calm())
+        path = tmp_path / f"again.{ending}"
+        WRITERS[ending](found, path)
+        text = path.read_text()
+        assert "Piraeus" in text and "WP 2" in text and "Heraklion" in text and "WP 1" not in text
+
+
 def test_csv_waits_in_other_units_and_at_repeated_positions(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("lat,lon,wait_s\n1,2,60\n1,2,30\n3,4,\n3.5,4\n")

@@ -17,6 +17,7 @@ from thalweg.route.formats.parsed_track import (
     SPEEDS,
     WAITS,
     ParsedTrack,
+    carried_names,
     position_of,
     unused_speed_notes,
     waypoint_track,
@@ -27,16 +28,20 @@ from thalweg.route.route import Route
 _NAMES = {
     "lat": ("lat", "latitude", "lat_deg", "y"),
     "lon": ("lon", "long", "lng", "longitude", "lon_deg", "x"),
+    "name": ("name", "waypoint", "waypoint name", "waypoint_name", "wp name", "wp_name"),
     "time": ("time", "datetime", "timestamp", "eta", "date"),
 }
 
+#: A number, or minutes before the letter of a hemisphere.
+_DECIMAL_COMMA = re.compile(r"^([\s+NSEWnsew-]*(?:\d+[°\s-]+)?\d+),(\d+)([\s'′°]*[NSEWnsew]?\s*)$")
 _SUMS = ("fuel_t", "energy_mwh", "co2_t", "cost_")  # columns that are sums from the start
 
 
 def parse_csv(text: str) -> ParsedTrack:
     """Read CSV text with columns lat and lon, separated by comma, semicolon or tab.
 
-    Columns time, waiting_h and ordered_speed_kn are taken, too, and geometry: RL or GC for the leg
+    Positions are in degrees, or in degrees and minutes as ``37 53.5N``. Columns name, time,
+    waiting_h and ordered_speed_kn are taken, too, and geometry: RL or GC for the leg
     after a waypoint, without it GC.
 
     Raises
@@ -63,14 +68,17 @@ def parse_csv(text: str) -> ParsedTrack:
         )
     if separator != ",":  # then a comma is the decimal sign of many languages
         for row in rows[1:]:
-            row[:] = [re.sub(r"^\s*([+-]?\d+),(\d+)\s*$", r"\1.\2", cell) for cell in row]
+            row[:] = [re.sub(_DECIMAL_COMMA, r"\1.\2\3", cell) for cell in row]
     positions = [_position(row, lat, lon, i) for i, row in enumerate(rows[1:], start=1)]
     time = _column(header, "time")
     times = [None if time is None else _cell_of(row, time) for row in rows[1:]]
     given = {name: header.index(name) for name in (*WAITS, *SPEEDS, GEOMETRY) if name in header}
     values = [{name: _cell_of(row, k) for name, k in given.items()} for row in rows[1:]]
     parsed = waypoint_track(positions, times, values)
-    return replace(parsed, notes=[f"its column {one}" for one in unused_speed_notes(header)])
+    notes = [f"its column {one}" for one in unused_speed_notes(header)]
+    label = _column(header, "name")
+    texts = [] if label is None else [_cell_of(row, label) for row in rows[1:]]
+    return replace(parsed, notes=notes, extensions=carried_names(texts, positions))
 
 
 def write_csv(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:

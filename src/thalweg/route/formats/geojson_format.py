@@ -17,6 +17,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.parsed_track import (
     ParsedTrack,
+    carried_names,
     position_of,
     unused_speed_notes,
     waypoint_track,
@@ -75,7 +76,12 @@ def parse_geojson(text: str) -> ParsedTrack:
     times = [first_time, *(one.get("time") for one in given[1:])]
     parsed = waypoint_track(positions, times, given)
     notes = unused_speed_notes(str(name) for one in given for name in one)
-    return replace(parsed, notes=[f"its property {note}" for note in notes])
+    names = [str(one.get("name") or "") for one in given]
+    return replace(
+        parsed,
+        notes=[f"its property {note}" for note in notes],
+        extensions=carried_names(names, positions),
+    )
 
 
 def _first_line(lines: list[list[list[Any]]]) -> list[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -14,6 +15,7 @@ from thalweg.route.formats.parsed_track import (
     SPEEDS,
     WAITS,
     ParsedTrack,
+    carried_names,
     position_of,
     waypoint_track,
 )  # fmt: skip
@@ -48,7 +50,8 @@ def parse_gpx(text: str) -> ParsedTrack:
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
     times = [next((e.text for e in p if local_name(e) == "time" and e.text), None) for p in points]
-    return waypoint_track(positions, times, [_extensions(point) for point in points])
+    parsed = waypoint_track(positions, times, [_extensions(point) for point in points])
+    return replace(parsed, extensions=carried_names(map(_name, points), positions))
 
 
 def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
@@ -74,6 +77,10 @@ def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None =
         _extend(point, row)
     ElementTree.register_namespace("thalweg", _OWN_NAMESPACE)
     write_xml(root, path)
+
+
+def _name(point: ElementTree.Element) -> str | None:
+    return next((e.text for e in point if local_name(e) == "name" and e.text), None)
 
 
 def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:

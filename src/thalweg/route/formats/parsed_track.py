@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.core.errors import InputError, ThalwegWarning
-from thalweg.core.geodesy import Position, check_position
+from thalweg.core.geodesy import Position, check_position, parse_position
 from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
-from thalweg.route.carried_extensions import NO_EXTENSIONS, CarriedExtensions
+from thalweg.route.carried_extensions import NO_EXTENSIONS, CarriedExtensions, Visit, visits_of
 from thalweg.route.track import Track
 
 
@@ -76,6 +76,8 @@ RHUMB_LINE, GREAT_CIRCLE = "RL", "GC"  #: kinds of lines in files of this packag
 _RHUMB_WORDS = ("rl", "rhumb", "rhumb line", "rhumbline", "loxodrome")
 _GREAT_CIRCLE_WORDS = ("gc", "great circle", "greatcircle", "orthodrome", "geodesic", "")
 RHUMB_DEVIATION = 20.0  #: rhumb lines are sailed as geodesics this close to them [m]
+_LETTER = re.compile(r"\d.*[NSEWnsew]|[NSEWnsew].*\d")  # of a hemisphere, with digits
+_NUMBERED = re.compile(r"WP \d+")  # names of this package
 LONGEST_WAIT = 366.0 * DAY  #: [s]
 
 
@@ -153,6 +155,18 @@ def stated_moments(times: Sequence[TimeLike | None]) -> list[float]:
         except InputError:
             found.append(math.nan)
     return found
+
+
+def given_names(names: Iterable[str | None], visits: Sequence[Visit]) -> dict[Visit, str]:
+    """Return the names of waypoints that are not mere numbers of this package, by visit."""
+    named = ((visit, (name or "").strip()) for visit, name in zip(visits, names))
+    return {visit: name for visit, name in named if name and not _NUMBERED.fullmatch(name)}
+
+
+def carried_names(names: Iterable[str | None], positions: Sequence[Position]) -> CarriedExtensions:
+    """Return the names of the waypoints of a file that are more than numbers, to be carried."""
+    found = given_names(names, visits_of(positions))
+    return CarriedExtensions(names={at: name for at, name in found.items() if not name.isdigit()})
 
 
 def _check_times_rise(moments: Sequence[float]) -> None:
@@ -262,7 +276,8 @@ def position_of(lat: object, lon: object, number: int) -> Position:
 
     Parameters
     ----------
-    lat, lon : Numbers or text in degrees.
+    lat, lon : Numbers or text in degrees, or texts with the letters of hemispheres, such as
+        ``37 53.5N`` and ``23 35.0E``.
     number : Number of the waypoint, for messages.
 
     Returns
@@ -270,6 +285,13 @@ def position_of(lat: object, lon: object, number: int) -> Position:
     (lat, lon) : Position [deg].
     """
     what = f"waypoint {number}"
+    texts = [
+        one for one in (lat, lon) if isinstance(one, str) and not math.isfinite(to_number(one))
+    ]
+    if len(texts) == 2 and all(_LETTER.search(one) for one in texts):
+        place = parse_position(" ".join(one.strip() for one in texts))
+        if place is not None:
+            return check_position(*place, what)
     return check_position(
         number_of(lat, f"latitude of {what}"), number_of(lon, f"longitude of {what}"), what
     )

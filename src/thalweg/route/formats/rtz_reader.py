@@ -25,6 +25,7 @@ from thalweg.route.carried_extensions import LEG_NUMBERS, LEG_TEXTS, Visit, visi
 from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     WaypointOrder,
+    given_names,
     position_of,
     waypoint_order,
 )
@@ -52,7 +53,6 @@ _FACTS: Final = {
     **dict.fromkeys(("vesselGM", "vesselMaxWave", "vesselMaxWind", "vesselSpeedMax"), _NUMBER),
     **dict.fromkeys(("vesselServiceMin", "vesselServiceMax"), _NUMBER),
 }
-_NUMBERED = re.compile(r"WP \d+")  # names of this package
 
 
 def parse_rtz(data: bytes) -> ParsedTrack:
@@ -101,7 +101,7 @@ def parse_rtz(data: bytes) -> ParsedTrack:
         replace(
             rtz_extensions(root, waypoints, visits, builder),
             info={} if info is None else _facts(info),
-            names=_given_names(waypoints, visits),
+            names=given_names((w.get("name") for w in waypoints), visits),
             corridors={
                 visit: sides
                 for visit, sides in zip(visits[1:], corridors)
@@ -168,12 +168,6 @@ def _facts(info: ElementTree.Element) -> dict[str, str]:
         for name, form in _FACTS.items()
         if (text := info.get(name, "").strip()) and form.fullmatch(text)
     }
-
-
-def _given_names(waypoints: list[ElementTree.Element], visits: list[Visit]) -> dict[Visit, str]:
-    """Return the names of waypoints that are not mere numbers of this package."""
-    named = ((visit, waypoint.get("name") or "") for visit, waypoint in zip(visits, waypoints))
-    return {visit: name for visit, name in named if name.strip() and not _NUMBERED.fullmatch(name)}
 
 
 def _details(
