@@ -5,9 +5,10 @@ import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, evaluate
-from thalweg.planning.report.given_route_report import given_route_notes
+from thalweg.planning.report.given_route_report import file_speed_notes, given_route_notes
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.provenance import given_route_warnings
+from thalweg.route import read_track
 
 SHIP = Ship.load("handysize-bulker")
 
@@ -54,6 +55,36 @@ def test_routes_in_open_sea_and_on_other_charts_have_none(chart):
     assert notes_of(ocean, chart) == []
     assert notes_of(ocean, Chart.open_water(40.0, 50.0, -30.0, -10.0)) == []
     assert np.isfinite(SHIP.draught)
+
+
+def test_speeds_outside_those_of_the_legs_of_a_file_are_stated(tmp_path):
+    """The file allowed 24 kn, the ship sailed 26 kn without a word."""
+    points = "".join(
+        f'<waypoint id="{k}"><position lat="{lat}" lon="-20"/>{leg}</waypoint>'
+        for k, (lat, leg) in enumerate(
+            [(45.0, ""), (45.2, ""), (49.0, '<leg geometryType="Orthodrome"/>'),
+             (49.3, '<leg speedMax="5"/>'), (49.6, '<leg speedMin="13" speedMax="13"/>')],
+            start=1,
+        )
+    )  # fmt: skip
+    path = tmp_path / "a.rtz"
+    path.write_text(
+        '<route xmlns="http://www.cirm.org/RTZ/1/0" version="1.0"><routeInfo routeName="a"/>'
+        f'<waypoints><defaultWaypoint><leg speedMax="11.5"/></defaultWaypoint>{points}</waypoints>'
+        "</route>"
+    )
+    track = read_track(path, depart=0)
+    route = evaluate(track, ship=SHIP, sea=Sea.calm(), speed_kn=12)
+    assert file_speed_notes(route) == [
+        "Not the speed of the route file: 12.0 kn is ordered on leg 3, above the greatest speed of "
+        "the file there (speedMax 5 kn). On 3 legs in all. Order another with --speed.",
+        "Not the speed of the route file: 12.0 kn is ordered on leg 4, below the least speed of "
+        "the file there (speedMin 13 kn). Order another with --speed.",
+    ]
+    slow = evaluate(track, ship=Ship.simple(speed_kn=4.0), sea=Sea.calm())
+    assert [note[:60] for note in file_speed_notes(slow)] == [
+        "Not the speed of the route file: 4.0 kn is ordered on leg 4,"
+    ]
 
 
 def test_units_and_times_that_a_file_does_not_state_have_a_note():

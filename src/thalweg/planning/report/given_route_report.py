@@ -1,4 +1,4 @@
-"""What a route from a file does near land, in passages and in traffic lanes, in words."""
+"""What a route from a file does near land, in passages and in traffic lanes, and at which speed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.given_numbers import to_number
+from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
 from thalweg.planning.report.land_report import time_of_passing
 from thalweg.planning.report.lane_report import lane_notes
@@ -20,12 +21,15 @@ from thalweg.planning.request.offing_choice import (
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
+from thalweg.route.carried_extensions import visits_of
 from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import offing_breaches
 from thalweg.route.route_tables import LEG_KINDS
 from thalweg.ship import Ship
 
 NEAR_LAND: Final = "Nearer to land than usual"  #: a note on such legs begins so
+FILE_SPEED: Final = "Not the speed of the route file"  #: a note on legs with limits begins so
+_SAME_SPEED: Final = 0.05  # differences below this are none [kn]
 _AS_WRITTEN: Final = (
     0.95  # of the usual distance: lines of files are up to 0.1 nm off those of plans
 )
@@ -54,6 +58,38 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     if not chart.zones.lanes:
         chart = chart_with_schemes(chart, ship, [(float(lat[k]), float(lon[k])) for k in (0, -1)])
     return notes + lane_notes(chart, route)
+
+
+def file_speed_notes(route: Route) -> list[str]:
+    """Return a note on legs whose ordered speed is outside the speeds that an RTZ file allows them.
+
+    Parameters
+    ----------
+    route : Its track carries ``speedMin`` and ``speedMax`` [kn] of the legs of the file.
+    """
+    track, details = route.track, route.track.extensions.details
+    ordered = np.asarray(route.legs["ordered_speed"], float) / KNOT
+    arriving = [details.get(visit, {}) for visit in visits_of(track.positions)[1:]]
+    last_of = {int(leg): k for k, leg in enumerate(track.leg_numbers)}  # pieces of a rhumb line
+    notes = []
+    for name, word, sign in (
+        ("speedMax", "above the greatest", 1.0),
+        ("speedMin", "below the least", -1.0),
+    ):
+        limits = {leg: to_number(arriving[k].get(name)) for leg, k in last_of.items()}
+        limit = np.array([limits[int(leg)] for leg in track.leg_numbers])
+        excess = sign * (ordered - limit)
+        broken = excess > _SAME_SPEED
+        if broken.any():
+            worst = int(np.nanargmax(np.where(broken, excess, np.nan)))
+            legs = sorted({int(leg) for leg in track.leg_numbers[broken]})
+            more = f" On {len(legs)} legs in all." if len(legs) > 1 else ""
+            notes.append(
+                f"{FILE_SPEED}: {ordered[worst]:.1f} kn is ordered on leg "
+                f"{int(track.leg_numbers[worst])}, {word} speed of the file there ({name} "
+                f"{limit[worst]:g} kn).{more} Order another with --speed."
+            )
+    return notes
 
 
 def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:

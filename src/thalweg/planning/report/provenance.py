@@ -17,7 +17,7 @@ from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.approach_report import turn_back_notes_of_route
 from thalweg.planning.report.depth_report import depth_notes
-from thalweg.planning.report.given_route_report import given_route_notes
+from thalweg.planning.report.given_route_report import file_speed_notes, given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
@@ -99,7 +99,7 @@ def given_route_warnings(
     """Return the warnings about a route from a file, as those about the routes of a plan.
 
     These are on its year, ice, gaps of data, units and times that files do not state, weather that
-    the ship does not read, land, passages, traffic lanes, depth and shoals.
+    the ship does not read, land, passages, traffic lanes, speeds of the file, depth and shoals.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def given_route_warnings(
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
     notes += unread_weather_notes(route, sea, ship)
     notes += waiting_weather_warnings(route, ship)
-    notes += given_route_notes(route, chart=chart, ship=ship)
+    notes += given_route_notes(route, chart=chart, ship=ship) + file_speed_notes(route)
     if route.min_ukc_m is not None:
         return notes
     return notes + depth_notes(chart, route, ship, min_ukc)
