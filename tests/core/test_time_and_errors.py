@@ -160,3 +160,8 @@ def test_times_beyond_the_nanoseconds_are_not_wrapped():
     assert np.isnat(to_datetime64(np.array([0.0, np.nan]))).tolist() == [False, True]
     with pytest.raises(InputError, match="1 to 9999"):
         to_datetime64(1e15)
+
+
+def test_a_name_without_its_unit_means_the_one_with_it():
+    assert close_matches("min_ukc", ["min_wait", "min_uke", "Min_UKC_m"])[0] == "Min_UKC_m"
+    assert close_matches("speed", ["speeds", "sped", "speed_kn"])[0] == "speed_kn"

@@ -5,6 +5,8 @@ import itertools
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship
 from thalweg.cli.main import main
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.file_writing import new_figure
 from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
 from thalweg.operations.dredging.cycle_records import SailedLeg, cycle_record
@@ -40,6 +43,7 @@ from thalweg.operations.dredging.verified_legs import (
 from thalweg.operations.dredging.work_windows import WorkWindows
 from thalweg.operations.examples.estuary import bed_depth
 from thalweg.operations.plots import draw_routes
+from thalweg.operations.plots.project_plots import _draw_load_factors
 from thalweg.operations.result_files import write_project_files
 from thalweg.route import evaluate
 
@@ -271,6 +275,22 @@ def test_the_load_chosen_produces_most(result):
             produced[both.load_factor] = volume / (empty.arrive - first.start)
     assert max(produced, key=produced.get) == first.load_factor
     assert first.production == pytest.approx(produced[first.load_factor], rel=0.01)
+
+
+def test_load_factors_are_drawn_as_bars_centred_on_them():
+    """0.4 was drawn from 0.40 to 0.48 in one run, 1.0 from 0.92 to 1.00 in the other."""
+    runs = [
+        SimpleNamespace(name=name, cycles=[SimpleNamespace(load_factor=one) for one in loads])
+        for name, loads in (("optimised", [0.4, 1.0, 1.0]), ("base case", [1.0]))
+    ]
+    work = SimpleNamespace(load_factors=(0.4, 0.8, 1.0))
+    drawn: Any = SimpleNamespace(project=SimpleNamespace(work=work), runs=runs)
+    axes = new_figure(4.0, 3.0, dpi=50).subplots()
+    _draw_load_factors(drawn, axes)
+    spans = [(bar.get_x(), bar.get_width(), bar.get_height()) for bar in axes.patches]
+    centres = [(left + 0.5 * width, height) for left, width, height in spans]
+    assert np.allclose(centres, [(0.4, 1), (1.0, 2), (1.0, 1)])
+    assert spans[2][1] < spans[1][1]  # the bar behind is seen
 
 
 @pytest.mark.slow

@@ -126,7 +126,8 @@ class NoPathError(NoRouteError):
 def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     """Return the known words that look most like ``word``, best first, ignoring case.
 
-    Names that have a rare word in common with it come before those that are only spelled alike.
+    Names that go on with an underscore, such as that of a unit, come first; names that have a rare
+    word in common with it come before those that are only spelled alike.
 
     Parameters
     ----------
@@ -139,7 +140,8 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     list of str : Best match first.
     """
     by_lower = {name.casefold(): name for name in known}
-    shared = _sharing_a_word(word, by_lower)
+    shared = [name for name in by_lower if name.startswith(f"{word.casefold()}_")]  # without unit
+    shared += _sharing_a_word(word, by_lower)
     alike = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
     return [by_lower[name] for name in list(dict.fromkeys([*shared, *alike]))[:count]]
 

@@ -13,8 +13,15 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
-from thalweg.core.errors import CoverageError, InputError, NoRouteError, ThalwegError
+from thalweg.core.errors import (
+    CoverageError,
+    InputError,
+    NoRouteError,
+    ThalwegError,
+    close_matches,
+)
 from thalweg.core.given_numbers import shortened_repr
+from thalweg.planning.voyage import Voyage
 
 MEDIA_TYPE: Final = "application/problem+json"
 _TITLES: Final = {
@@ -186,8 +193,13 @@ def add_problem_handlers(
         for fault in error.errors():
             if fault["loc"][0] == "path" and fault["type"] == "string_pattern_mismatch":
                 return problem_response(_unknown_path(str(fault["loc"][-1]), fault["input"]))
-        faults = faults_of(request, error.body)
-        return problem_response(_shape_error(error), faults=faults or shape_faults(error.errors()))
+        faults: Sequence[ThalwegError] = faults_of(request, error.body)
+        faults = faults or shape_faults(error.errors())
+        first = _shape_error(error)
+        alike = (one for one in faults if one.details.get("field") == first.details.get("field"))
+        first = next(alike, first)  # knows the entries of the request
+        first.details["faults"] = len(error.errors())
+        return problem_response(first, faults=faults)
 
     @application.exception_handler(HTTPException)
     def _of_path(request: Request, error: HTTPException) -> JSONResponse:
@@ -226,11 +238,19 @@ def shape_faults(faults: Sequence[Any], model: type[BaseModel] | None = None) ->
     return [_fault_of_shape(one, model) for one in faults]
 
 
-def _shape_error(error: RequestValidationError) -> ServiceError:
+def _shape_error(error: RequestValidationError) -> ThalwegError:
     """Return the first fault of a request that has not the form of its schema."""
-    found = _fault_of_shape(error.errors()[0])
-    found.details["faults"] = len(error.errors())
-    return found
+    return _fault_of_shape(error.errors()[0])
+
+
+def _meant(name: str, model: type[BaseModel]) -> str:
+    """Return a question on the entries that an unknown entry of a request may mean, or nothing."""
+    near = close_matches(name, model.model_fields)
+    if "voyage" in model.model_fields:
+        entries = list(Voyage.__dataclass_fields__)
+        of_voyage = [name] if name in entries else close_matches(name, entries)
+        near = [f"voyage.{one}" for one in of_voyage] or near
+    return f"Did you mean {' or '.join(near)}?" if near else ""
 
 
 def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> ServiceError:
@@ -246,7 +266,9 @@ def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> Service
     name = ".".join(place) or "The body"
     what = _SHAPES.get(first["type"], f"is not possible: {first['msg']}")
     possible = "The form of requests is in /openapi.json, with examples."
+    remedy = f"Correct {name}." if place else "Correct the request."
     if first["type"] == "extra_forbidden" and model is not None and len(place) == 1:
+        remedy = _meant(place[0], model) or f"Leave {name} out."
         possible = f"A request has the entries {', '.join(sorted(model.model_fields))}."
     if first["type"] in ("too_short", "too_long"):
         given, context = first["input"], first["ctx"]
@@ -268,6 +290,6 @@ def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> Service
         422,
         f"{name} {what}.",
         possible,
-        f"Correct {name}." if place else "Correct the request.",
+        remedy,
         field=name if place else None,
     )

@@ -98,13 +98,13 @@ def _legend_patch(colour: str, label: str) -> Any:
 
 
 def _draw_load_factors(result: ProjectResult, axes: Any) -> None:
+    """Draw the cycles of each load factor as bars centred on it, those of later runs narrower."""
     factors = np.array(result.project.work.load_factors)
     width = min(0.08, 0.4 * float(np.diff(factors).min())) if len(factors) > 1 else 0.04
-    shift = -0.5 * width * (len(result.runs) - 1)
     for number, run in enumerate(result.runs):
         values, counts = np.unique([c.load_factor for c in run.cycles], return_counts=True)
-        at = values + shift + number * width
-        axes.bar(at, counts, width=width, color=_COLOURS.get(run.name), label=run.name)
+        wide = width * (1.0 - number / len(result.runs))
+        axes.bar(values, counts, width=wide, color=_COLOURS.get(run.name), label=run.name)
     axes.set(xlabel="load factor", ylabel="cycles", xlim=(-0.1, 1.1))
     axes.legend(fontsize=8, frameon=False)
 

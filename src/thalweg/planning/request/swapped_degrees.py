@@ -1,7 +1,8 @@
-"""Latitude and longitude in the wrong order: refusals and notes that say so."""
+"""Latitude and longitude in the wrong order, or a decimal comma: refusals and notes that say so."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final
@@ -19,6 +20,7 @@ CHECK_POSITION: Final = "Check the position"  #: a note on swapped degrees begin
 _NEAR_WATER: Final = 60_000.0  # [m]
 _FAR_FROM_PORTS: Final = 60.0 * NAUTICAL_MILE
 _FAR_SHORTER: Final = 5.0  # times, where one end is swapped and the other is not
+_ONE_COMMA: Final = re.compile(r"([+-]?\d+),(\d+)")
 _SWAPPED: Final = "latitude and longitude swapped?"
 
 
@@ -37,9 +39,21 @@ def errors_on_swapped_degrees(
         yield
     except InputError as error:
         hint = "" if _SWAPPED in error.remedy else _hint_by_others(place, others, chart)
+        hint = hint or _decimal_comma_hint(place)
         if not hint:
             raise
         raise InputError(error.asked, error.possible, hint, **error.details) from None
+
+
+def _decimal_comma_hint(place: Place) -> str:
+    """Return a question where two whole numbers may be one number with a decimal comma."""
+    pair = _ONE_COMMA.fullmatch(place.strip()) if isinstance(place, str) else None
+    if pair is None:
+        return ""
+    return (
+        f"It is read as latitude {pair[1]}, longitude {pair[2]}. Was a decimal comma meant? Write "
+        f"latitude and longitude with points, such as {pair[1]}.{pair[2]},3.6."
+    )
 
 
 def _hint_by_others(place: Place, others: Sequence[Place], chart: Chart) -> str:

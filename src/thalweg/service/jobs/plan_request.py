@@ -279,6 +279,7 @@ class PlanRequest(ShipAndSea):
             With the entry of the voyage in ``details["field"]``.
         """
         self.check_sea()
+        self._check_places_of_entries()
         voyage = Voyage.from_dict(self.voyage)
         self._check_network(voyage)
         check_itinerary(voyage)
@@ -289,6 +290,17 @@ class PlanRequest(ShipAndSea):
                 error.details["field"] = "charges.share_percent"
                 raise
         return voyage
+
+    def _check_places_of_entries(self) -> None:
+        """Raise `InputError` for entries of the request that are inside the voyage."""
+        for name in self.voyage:
+            if name in type(self).model_fields and name not in Voyage.__dataclass_fields__:
+                raise InputError(
+                    f"The entry {name} is inside voyage.",
+                    "It is an entry of the request itself, beside voyage.",
+                    "Move it there.",
+                    field=name,
+                )
 
     def _check_network(self, voyage: Voyage) -> None:
         layered = voyage.layered is not None
