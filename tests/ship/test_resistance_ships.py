@@ -427,3 +427,10 @@ def test_engine_types_are_words_and_fuels_they_cannot_burn_are_named():
         _ship(fuel={"type": "lng"})
     with pytest.raises(InputError, match="Did you mean 'slow_speed_diesel'"):
         _ship(engine={"power_kw": 9000, "type": "slow_speed_disel"})
+
+
+def test_the_usual_gear_of_a_slow_engine_says_that_it_may_have_none():
+    """4 % of the power of a direct drive went into a gear that it has not, without a word."""
+    (gear,) = [e for e in Ship.load("yu-single-screw-169m").estimated if e.key == "gear_efficiency"]
+    assert gear.value == 0.96 and gear.method.startswith("usual value, Schless (2023); slow-speed")
+    assert "directly: then give 1" in gear.method

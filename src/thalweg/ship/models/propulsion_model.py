@@ -264,8 +264,20 @@ def build_propulsion(file: ShipFile, hull: Hull) -> PropulsionModel:
     if name not in PROPULSION_METHODS:
         raise unknown_name_error("propulsion method", name, PROPULSION_METHODS)
     chain = PROPULSION_METHODS[name](hull, file.propulsion)
+    if file.engine.type == "slow_speed_diesel":
+        chain = replace(chain, estimated=tuple(map(_of_direct_drive, chain.estimated)))
     margin = file.engine.sea_margin_percent
     return _with_sea_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
+
+
+def _of_direct_drive(estimate: Estimate) -> Estimate:
+    """Return an estimate; that of a gear says that slow engines mostly have none."""
+    if estimate.key != "gear_efficiency" or estimate.value == 1.0:
+        return estimate
+    method = (
+        f"{estimate.method}; slow-speed engines mostly drive the propeller directly: then give 1"
+    )
+    return replace(estimate, method=method)
 
 
 def _with_sea_margin(chain: PropulsionModel, factor: float) -> PropulsionModel:
