@@ -10,10 +10,11 @@ from tests.conftest import data_file
 from tests.route.planar import ship
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import densify, distance
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route import RouteFileOptions, Track, evaluate, read_track, write_rtz
+from thalweg.route.formats.file_route import file_route
 from thalweg.sea import Sea
 
 DEPART = "2026-03-01T06:00:00Z"
@@ -379,7 +380,8 @@ NAMED = """<?xml version="1.0"?><route version="1.2" xmlns="http://www.cirm.org/
 <waypoint id="2" revision="0" name="WP 2"><position lat="50.1" lon="-5"/>
  <leg portsideXTD="0.05" starboardXTD="0.06"/></waypoint>
 <waypoint id="3" revision="0" name="Buoy &lt;3&gt;"><position lat="50.2" lon="-5"/></waypoint>
-<waypoint id="4" revision="0"><position lat="51" lon="0"/><leg portsideXTD="99"/></waypoint>
+<waypoint id="4" revision="0"><position lat="51" lon="0"/>
+ <leg portsideXTD="99" geometryType="Orthodrome"/></waypoint>
 </waypoints></route>"""
 
 
@@ -404,6 +406,36 @@ def test_names_limits_and_facts_of_a_file_are_kept(tmp_path, version):
     etree = pytest.importorskip("lxml.etree")
     schema = data_file(f"rtz/schema/RTZ Schema version {version.replace('.', '_')}.xsd")
     etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.parse(str(written)))
+
+
+def test_a_rhumb_leg_of_a_file_stays_one_leg(tmp_path):
+    """Falkonera to Dia got a waypoint between them, 0.12 nm off the geodesic."""
+    places = [(37.7333, 23.74), (36.8, 24.0333), (35.5, 25.05), (35.4, 26.5)]
+    points = "".join(
+        f'<waypoint id="{k}"><position lat="{lat}" lon="{lon}"/></waypoint>'
+        for k, (lat, lon) in enumerate(places, start=1)
+    )
+    (tmp_path / "a.rtz").write_text(
+        '<route xmlns="http://www.cirm.org/RTZ/1/0" version="1.0"><routeInfo routeName="a"/>'
+        f"<waypoints>{points}</waypoints></route>"
+    )
+    track, again = read_track(tmp_path / "a.rtz", depart=0), tmp_path / "b.rtz"
+    assert len(track) > 4
+    sailed = evaluate(track, ship=ship(6.0), sea=Sea.calm())
+    write_rtz(sailed, again)
+    written = again.read_text()
+    assert written.count("<position") == 4 and all(f'lat="{lat}' in written for lat, _ in places)
+    assert file_route(sailed).cross_track_m < 30.0
+    # great circles in parts, as those sailed at one speed over ground, are no rhumb lines
+    lat, lon, leg = densify(np.full(3, 45.0), np.array([-20.0, -15.0, -10.0]), 150_000.0)
+    divided = Track(lat, lon, 0.0, given_leg=leg + 1)
+    assert divided.leg_numbers.tolist() == [1, 1, 1, 2, 2, 2]
+    write_rtz(evaluate(divided, ship=ship(6.0), sea=Sea.calm()), again)
+    assert again.read_text().count("<position") > 6
+    write_rtz(sailed, again, RouteFileOptions(legs="great-circle"))
+    assert again.read_text().count("<position") > 4
+    write_rtz(sailed, again, RouteFileOptions(max_waypoints=2, cross_track_nm=5.0))
+    assert again.read_text().count("<position") == 2
 
 
 DETAILED = """<?xml version="1.0"?><route version="1.2" xmlns="http://www.cirm.org/RTZ/1/2">

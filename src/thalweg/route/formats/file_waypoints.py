@@ -64,7 +64,10 @@ def file_vertices(route: Route, options: RouteFileOptions) -> FileVertices:
     InputError : If the route needs more waypoints than are allowed.
     """
     most, limit = options.max_waypoints, options.limit
-    options, line = _with_room(options), RouteLine.of(route, keep_named=most is None)
+    # spaced waypoints lie on geodesics, and great circles do not follow rhumb lines
+    keep_rhumb = most is None and not options.great_circles and math.isinf(options.spacing)
+    line = RouteLine.of(route, keep_named=most is None, keep_rhumb=keep_rhumb)
+    options = _with_room(options)
     found = _vertices(line, options, limit)
     if most is None or len(found.lat) <= most:
         return found
@@ -129,8 +132,9 @@ def _broken_legs(
     if options.great_circles:
         return densify(lat, lon, spacing)
     room = np.maximum(limit - greatest_left_out(line, kept), _LEAST_ROOM * limit)
-    room[canal] = math.inf
-    given, share = canal | line.approach[kept[:-1]], np.ones(len(room))
+    whole = canal | line.rhumb[kept[:-1]]
+    room[whole] = math.inf
+    given, share = whole | line.approach[kept[:-1]], np.ones(len(room))
     for smaller in _CLEARING_SHARES:
         lat1, lon1, leg = densify_for_rhumb(lat, lon, share * room, spacing)
         near = np.zeros(len(room), bool)

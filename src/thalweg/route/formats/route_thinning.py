@@ -12,16 +12,19 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.geodesy import MEAN_RADIUS, distance, inverse
+from thalweg.core.rhumb_lines import rhumb_cross_track
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route.carried_extensions import visits_of
 from thalweg.route.route import Route
+from thalweg.route.track import Track
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _SAME_SPEED = 0.01 * KNOT  # differences of ordered speeds below this are none [m/s]
 _SAME_PLACE = 20.0  # waypoints closer than this are one [m]
+_ON_RHUMB_LINE = 1.0  # waypoints so near a rhumb line are on it [m]
 _SHORT_LEG = 0.5 * NAUTICAL_MILE  # shorter legs are joined where the cross-track limit allows it
 
 
@@ -39,6 +42,7 @@ class RouteLine:
         land, (n - 1,).
     held : Waypoints that are never left out, (n,).
     carried : Waypoints with extensions of other makers, which no waypoint beside stands for, (n,).
+    rhumb : Which legs are parts of a rhumb line of the file, which one leg stands for, (n - 1,).
     """
 
     lat: FloatArray
@@ -49,15 +53,17 @@ class RouteLine:
     approach: BoolArray
     held: BoolArray
     carried: BoolArray
+    rhumb: BoolArray
     samples: Mapping[str, FloatArray]
 
     @classmethod
-    def of(cls, route: Route, *, keep_named: bool) -> RouteLine:
+    def of(cls, route: Route, *, keep_named: bool, keep_rhumb: bool) -> RouteLine:
         """Return the line of a route.
 
         Parameters
         ----------
         keep_named : Whether to keep all waypoints with names or cross-track limits of a file.
+        keep_rhumb : Whether to keep the ends of rhumb lines of a file, and none between them.
         """
         track, length, speed = route.track, route.legs["length"], route.legs["ordered_speed"]
         canal = np.asarray(length > 1.0001 * track.lengths + 1.0)
@@ -74,11 +80,36 @@ class RouteLine:
             if keep_named:
                 held |= np.array([at in given.names or at in given.corridors for at in visits])
         held |= carried
+        rhumb = np.zeros(len(canal), bool)
+        if keep_rhumb:
+            rhumb = _rhumb_parts(track, held)
+            ends = np.diff(track.leg_numbers) != 0
+            held[1:-1] |= ends & (rhumb[:-1] | rhumb[1:])
         start = cumulative_sums(length)
         approach = np.broadcast_to(kind != 0, canal.shape).copy()
         return cls(
-            track.lat, track.lon, track.wait, start, canal, approach, held, carried, route.samples
+            *(track.lat, track.lon, track.wait, start, canal, approach),
+            *(held, carried, rhumb, route.samples),
         )
+
+
+def _rhumb_parts(track: Track, held: BoolArray) -> BoolArray:
+    """Return which legs are parts of one rhumb line of the file, sailed as several geodesics.
+
+    Parameters
+    ----------
+    held : Waypoints that are never left out, (n,): a leg with one inside has no such parts.
+    """
+    lat, lon, new = track.lat, track.lon, np.diff(track.leg_numbers) != 0
+    line = np.append(0, np.cumsum(new))  # of each leg
+    first = np.append(0, np.flatnonzero(new) + 1)
+    last = np.append(first[1:], len(lat) - 1)
+    inner = np.flatnonzero(~new) + 1
+    a, b = first[line[inner]], last[line[inner]]
+    apart = rhumb_cross_track((lat[a], lon[a]), (lat[b], lon[b]), lat[inner], lon[inner])
+    found = last - first > 1
+    found[line[inner[(apart > _ON_RHUMB_LINE) | held[inner]]]] = False
+    return np.asarray(found[line])
 
 
 def kept_waypoints(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
@@ -169,6 +200,7 @@ def _turns(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
     keep = line.held.copy()
     held = np.flatnonzero(keep)
     first, last = held[:-1], held[1:]
+    first, last = first[~line.rhumb[first]], last[~line.rhumb[first]]
     while (wide := last - first > 1).any():
         first, last = first[wide], last[wide]
         apart, start = _inner_cross_tracks(line, first, last)
