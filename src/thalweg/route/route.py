@@ -75,7 +75,14 @@ class Violation:
         return text
 
     def number_texts(self) -> tuple[str, str, str]:
-        """Return value and limit as texts that differ, and the name of their unit."""
+        """Return the value and the limit as texts.
+
+        Returns
+        -------
+        tuple of str
+            Value and limit, with as many decimals as make them differ, and the name of their unit
+            after a space.
+        """
         units = (unit for start, unit in _UNITS.items() if self.reason.startswith(start))
         unit, name = next(units, (1.0, ""))
         return *_distinct(self.value / unit, self.limit / unit), name
