@@ -478,6 +478,6 @@ def test_a_speed_that_cannot_be_ordered_is_refused_with_the_speeds_of_the_ship()
     )
     with pytest.raises(InputError) as caught:
         ship.with_speeds(-3.0 * KNOT)
-    assert caught.value.possible == (
-        "The ship file gives 6 to 12 kn; other speeds are above 0 and at most 100 kn."
-    )
+    assert caught.value.possible == "Speeds are above 0; the ship file gives 6 to 12 kn."
+    with pytest.raises(InputError, match="above 0 and at most 100 kn; the ship file gives 6 to 12"):
+        ship.with_speeds(150.0 * KNOT)

@@ -278,10 +278,8 @@ def _speed_out_of_range_error(
     possible = f"Its calm-water speeds run from {low / KNOT:g} to {high / KNOT:g} kn."
     if low == 0.0:
         ends = dict.fromkeys((f"{own[0] / KNOT:.4g}", f"{own[-1] / KNOT:.4g}"))
-        possible = (
-            f"The ship file gives {' to '.join(ends)} kn; "
-            f"other speeds are above 0 and at most {high / KNOT:g} kn."
-        )
+        most = f" and at most {high / KNOT:g} kn" if (speeds > high).any() else ""
+        possible = f"Speeds are above 0{most}; the ship file gives {' to '.join(ends)} kn."
     return InputError(
         f"The ship cannot be ordered to {listed} kn.",
         possible,
