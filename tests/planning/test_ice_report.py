@@ -9,7 +9,7 @@ from thalweg import Sea
 from thalweg.chart.ice_areas import ICE_AREAS
 from thalweg.chart.passages import PASSAGES
 from thalweg.core.time import parse_time
-from thalweg.planning.report.ice_report import ice_warnings
+from thalweg.planning.report.ice_report import ice_notes_of_way, ice_warnings
 from thalweg.planning.report.note_order import count_of_dangers
 
 LULEA_TO_SEA = ([65.3, 64.0, 62.0, 59.0], [22.6, 22.0, 19.5, 20.0])
@@ -65,6 +65,9 @@ def test_high_latitudes_are_noted_in_all_months():
         ("south-eastern Barents Sea", 69.5, 52.0, 3),
         ("East Greenland", 70.5, -20.5, 5),
         ("Sea of Azov", 46.0, 36.5, 1),
+        ("Southern Ocean inside the limit of icebergs", -54.0, 3.0, 2),
+        ("Southern Ocean inside the limit of icebergs", -54.5, -36.5, 12),
+        ("Southern Ocean inside the limit of icebergs", -62.0, 179.0, 1),
     ],
 )
 def test_places_with_ice(name, lat, lon, month):
@@ -75,7 +78,8 @@ def test_places_with_ice(name, lat, lon, month):
 @pytest.mark.parametrize(
     ("lat", "lon"),
     [(55.0, 18.0), (59.0, 20.5), (57.7, 11.0), (70.5, 31.0), (43.0, 135.0), (44.0, -66.5),
-     (38.0, 123.5), (47.0, -45.0), (64.0, -53.5), (54.0, -170.0), (44.0, 35.0), (66.5, -25.0)],
+     (38.0, 123.5), (47.0, -45.0), (64.0, -53.5), (54.0, -170.0), (44.0, 35.0), (66.5, -25.0),
+     (-57.0, -67.0), (-51.7, -57.5), (-45.0, 20.0), (-47.0, 170.0), (-58.0, -150.0)],
 )  # fmt: skip
 def test_places_without_usual_ice(lat, lon):
     assert not any(area.contains(lat, lon) for area in ICE_AREAS)
@@ -87,3 +91,48 @@ def test_passages_with_ice_are_inside_areas():
         (passage,) = [one for one in PASSAGES if one.name == name]
         assert any(np.any(area.contains(*passage.positions)) for area in ICE_AREAS), name
         assert "ice" not in passage.note
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon", "months"),
+    [
+        (-60.0, 85.0, (7, 8, 9, 10, 11)),
+        (-57.0, 0.0, (7, 8, 9, 10, 11)),
+        (-61.0, -40.0, (1, 5, 6, 7, 8, 9, 10, 11, 12)),
+        (-72.0, -40.0, tuple(range(1, 13))),
+        (-60.0, -120.0, ()),
+        (-61.9, -179.9, ()),
+    ],
+)
+def test_antarctic_pack_ice_reaches_north_until_november(lat, lon, months):
+    found = set()
+    for area in ICE_AREAS:
+        if area.name == "Antarctic pack ice" and area.contains(lat, lon):
+            found |= set(area.months)
+    assert tuple(sorted(found)) == months
+
+
+def test_a_route_far_south_in_august_notes_pack_ice_icebergs_and_the_winter_load_line():
+    south = ([-34.0, -53.0, -60.0, -57.0, -41.5], [18.0, 50.0, 85.0, 120.0, 175.0])
+    pack, icebergs, load_line = ice_warnings(route(*south, "2026-08-20"), Sea.calm())
+    assert pack.startswith(
+        "The route reaches the Antarctic pack ice in August, from 60 00.0S 085 00.0E. "
+        "Ice is usual there from July to November (approximate, after NSIDC median ice edges"
+    )
+    assert icebergs.startswith(
+        "The route reaches the Southern Ocean inside the limit of icebergs in August, from 53 00.0S"
+    )
+    assert "Icebergs are usual there in all months" in icebergs
+    assert "16 April to 15 October" in load_line and "winter load line" in load_line
+    (icebergs,) = ice_warnings(route(*south, "2026-12-20"), Sea.calm())
+    assert "limit of icebergs in December" in icebergs
+    assert count_of_dangers([pack, icebergs]) == 2
+
+
+def test_ways_without_a_date_name_areas_and_months_of_ice():
+    (note,) = ice_notes_of_way([(-53.0, 50.0), (-60.0, 85.0), (-57.0, 120.0)])
+    assert note == (
+        "Ice is usual on the way in: Antarctic pack ice from July to November; "
+        "Southern Ocean inside the limit of icebergs in all months."
+    )
+    assert ice_notes_of_way([(-34.0, 18.0), (-40.0, 80.0), (-41.0, 174.0)]) == ()

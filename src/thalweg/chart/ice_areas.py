@@ -1,8 +1,11 @@
 """Sea areas with the months in which ice is usual.
 
-The table is ``data/ice_areas.csv``, one row an area: name, first and last month, outline, source.
-Months and outlines are typical, from the general knowledge of pilots; winters differ. Routes are
-not planned by them: a plan states that a route reaches such water. Ice in the data is better.
+The table is ``data/ice_areas.csv``, one row an area: name, first and last month, outline, source,
+and kind: ice, or icebergs. Months and outlines are typical, from the general knowledge of pilots;
+winters differ. Those of the Southern Ocean are approximate, drawn by hand after the median edges of
+sea ice of the National Snow and Ice Data Center (NSIDC): areas of one name lie inside each other,
+with ice in more months the further south. Routes are not planned by the table: a plan states that a
+route reaches such water. Ice in the data is better.
 """
 
 from __future__ import annotations
@@ -32,6 +35,8 @@ class IceArea:
         contains a new year.
     outline : tuple of (lat, lon)
         Corners [deg]; edges are straight in degrees.
+    kind : str
+        "ice" or "icebergs".
     """
 
     name: str
@@ -39,6 +44,7 @@ class IceArea:
     last: int
     outline: tuple[Position, ...]
     source: str = ""
+    kind: str = "ice"
 
     @cached_property
     def months(self) -> tuple[int, ...]:
@@ -66,7 +72,8 @@ def _read_ice_areas() -> tuple[IceArea, ...]:
     areas = []
     for row in csv.DictReader(text.splitlines()):
         first, last = (int(month) for month in row["months"].split("-"))
-        areas.append(IceArea(row["name"], first, last, read_line(row["outline"]), row["source"]))
+        outline = read_line(row["outline"])
+        areas.append(IceArea(row["name"], first, last, outline, row["source"], row["kind"]))
     return tuple(areas)
 
 

@@ -38,10 +38,8 @@ from thalweg.planning.report.distance_report import (
     shoal_detour_notes,
     shoal_notes,
 )
-from thalweg.planning.request.voyage_endpoints import (
-    Endpoint,
-    resolve_places,
-)
+from thalweg.planning.report.ice_report import ice_notes_of_way
+from thalweg.planning.request.voyage_endpoints import Endpoint, resolve_places
 from thalweg.planning.seaways import (
     Seaways,
     path_length_and_canals,
@@ -266,7 +264,7 @@ def _way_over_seas(
     first, last = way.ends[0].approach, way.ends[-1].approach
     joints = [len(first.line) - 1] if first else []
     joints += [len(way.line) - len(last.line)] if last else []
-    notes += tuple(turn_back_notes(lat, lon, joints))
+    notes += (*turn_back_notes(lat, lon, joints), *ice_notes_of_way(way.line))
     notes += () if shut else roundabout_notes(way.line, way.length)
     approaches = tuple((a.label, a.length) for a in way.approaches)
     return SeaDistance(*names, way.length, canals, straits, approaches, way.line, notes)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import calendar
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
-from thalweg.chart.ice_areas import ICE_AREAS
-from thalweg.core.geodesy import format_position_minutes
+from thalweg.chart.ice_areas import ICE_AREAS, IceArea
+from thalweg.core.geodesy import Position, densify, format_position_minutes
 from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.sea.standard_names import ICE
@@ -17,6 +19,10 @@ from thalweg.sea.standard_names import ICE
 _LATITUDE: Final = 72.0  #: [deg] beyond which ice is likely in all months
 _OPEN_WATER: Final = 0.1  #: greatest concentration of ice that counts as open water
 REACHES_ICE: Final = "The route reaches"  #: a note on ice begins so
+_SPACING: Final = 20.0 * NAUTICAL_MILE  #: of the places at which ways without a date are tested [m]
+_SOUTH: Final = -50.0  #: [deg] south of which all water is in the zone below
+#: Winter in the Southern Winter Seasonal Zone, as (month, day).
+_SOUTHERN_WINTER: Final = ((4, 16), (10, 15))
 _ADVICE: Final = "give a via point or a no-go zone if that water is closed"
 
 
@@ -44,25 +50,69 @@ def ice_warnings(route: Route, sea: Sea) -> list[str]:
             f"{format_position_minutes(lat[at], lon[at])}; ice is not modelled: {_ADVICE}."
         )
     unknown = np.isnan(ice)
-    month = time.astype("datetime64[s]").astype("datetime64[M]").astype(np.int64) % 12 + 1
+    month = _months(time)
+    reached: dict[str, tuple[int, IceArea]] = {}  # of each name where the ship first is in it
     for area in ICE_AREAS:
         inside = unknown & np.isin(month, area.months)
         inside[inside] = area.contains(lat[inside], lon[inside])
         if inside.any():
-            at = int(np.argmax(inside))
-            notes.append(
-                f"{REACHES_ICE} the {area.name} in {calendar.month_name[month[at]]}, from "
-                f"{format_position_minutes(lat[at], lon[at])}. Ice is usual there {area.season} "
-                f"({area.source}), and the data have none: read the ice charts. Ice is not "
-                f"modelled: {_ADVICE}."
-            )
+            first = (int(np.argmax(inside)), area)
+            reached[area.name] = min(first, reached.get(area.name, first), key=lambda one: one[0])
             unknown &= ~inside
+    for at, area in reached.values():
+        what = "Icebergs are" if area.kind == "icebergs" else "Ice is"
+        charts = "warnings of icebergs" if area.kind == "icebergs" else "ice charts"
+        notes.append(
+            f"{REACHES_ICE} the {area.name} in {calendar.month_name[month[at]]}, from "
+            f"{format_position_minutes(lat[at], lon[at])}. {what} usual there {area.season} "
+            f"({area.source}), and the data have none: read the {charts}. Ice is not "
+            f"modelled: {_ADVICE}."
+        )
+    notes += _load_line_notes(time, lat)
     far = np.where(unknown, np.abs(lat), 0.0)
     worst = int(np.argmax(far))
     if far[worst] < _LATITUDE:
         return notes
     place = format_position_minutes(lat[worst], lon[worst])
     return [*notes, f"{REACHES_ICE} {place}, and sea ice is not modelled: {_ADVICE}."]
+
+
+def ice_notes_of_way(line: Sequence[Position]) -> tuple[str, ...]:
+    """Return a note on the areas and months of ice on a way that has no date.
+
+    Parameters
+    ----------
+    line : Waypoints (lat, lon) [deg].
+    """
+    places = np.array(line, float)
+    lat, lon, _ = densify(places[:, 0], places[:, 1], _SPACING)
+    found: dict[str, str] = {}
+    for area in ICE_AREAS:  # of one name the longest season is first
+        if area.name not in found and area.contains(lat, lon).any():
+            found[area.name] = f"{area.name} {area.season}"
+    if not found:
+        return ()
+    return (f"Ice is usual on the way in: {'; '.join(found.values())}.",)
+
+
+def _load_line_notes(time: FloatArray, lat: FloatArray) -> list[str]:
+    """Return a note on the winter load line far south, where boundaries do not matter."""
+    days = time.astype("datetime64[s]").astype("datetime64[D]")
+    day = (days - days.astype("datetime64[M]")).astype(np.int64) + 1
+    of_year = 100 * _months(time) + day
+    first, last = (100 * month + day for month, day in _SOUTHERN_WINTER)
+    if not np.any((lat < _SOUTH) & (of_year >= first) & (of_year <= last)):
+        return []
+    return [
+        "The winter load line applies from 16 April to 15 October where the route is in the "
+        "Southern Winter Seasonal Zone (Load Lines Convention 1966, Annex II): see that the "
+        "draught allows it."
+    ]
+
+
+def _months(time: FloatArray) -> np.ndarray:
+    """Return the month of each time [s since 1970-01-01T00:00Z], 1 to 12."""
+    return time.astype("datetime64[s]").astype("datetime64[M]").astype(np.int64) % 12 + 1
 
 
 def _ice_of_data(sea: Sea, time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
