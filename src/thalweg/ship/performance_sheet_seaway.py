@@ -37,6 +37,12 @@ _DANGER_WORDS: Final = {
 }
 
 
+def squat_of_sheet(ship: Ship) -> SquatModel | None:
+    """Return the squat that the sheet shows; None where the particulars do not suffice."""
+    hull = ShipInSeaway.of(ship, Conditions()).hull
+    return squat_model_of(ship.file, hull, ship.loading)
+
+
 @dataclass(frozen=True)
 class ShipInSeaway:
     """A ship in given water and waves.

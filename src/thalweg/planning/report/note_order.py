@@ -14,6 +14,7 @@ from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
+from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.unread_weather import WAVES_UNREAD, WIND_UNREAD
 from thalweg.planning.report.waiting_report import PASSES_TIME, WAITS
 from thalweg.planning.report.wave_report import TOO_STEEP
@@ -40,6 +41,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NOT_REACHED,
     PORT_TOO_SHALLOW,
     LIMIT_EXCEEDED,
+    SQUAT_UNCOUNTED,
     WAITS,
     PASSES_TIME,
     TOO_STEEP,

@@ -21,6 +21,7 @@ from thalweg.planning.report.given_route_report import file_speed_notes, given_r
 from thalweg.planning.report.ice_report import ice_warnings
 from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
+from thalweg.planning.report.squat_report import squat_notes
 from thalweg.planning.report.unread_weather import unread_weather_notes
 from thalweg.planning.report.waiting_report import waiting_notes, waiting_weather_warnings
 from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
@@ -69,6 +70,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
         notes += comfort_turn_notes(route)
     notes += waiting_weather_warnings(route, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
+    notes += squat_notes(route, context.ship, context.min_ukc)
     if context.needs.limits.depth_checked:
         return notes
     return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)
@@ -100,6 +102,7 @@ def given_route_warnings(
 
     These are on its year, ice, gaps of data, units and times that files do not state, weather that
     the ship does not read, land, passages, traffic lanes, speeds of the file, depth and shoals.
+    the ship does not read, land, passages, traffic lanes, squat, depth and shoals.
 
     Parameters
     ----------
@@ -113,6 +116,7 @@ def given_route_warnings(
     notes += unread_weather_notes(route, sea, ship)
     notes += waiting_weather_warnings(route, ship)
     notes += given_route_notes(route, chart=chart, ship=ship) + file_speed_notes(route)
+    notes += given_route_notes(route, chart=chart, ship=ship) + squat_notes(route, ship, min_ukc)
     if route.min_ukc_m is not None:
         return notes
     return notes + depth_notes(chart, route, ship, min_ukc)
