@@ -393,7 +393,7 @@ def test_invalid_projects_are_refused_before_the_simulation(changes, words):
 
 
 def sail(**changes):
-    project = Project.from_dict(example(base_case=None, **changes))
+    project = Project.from_dict(example(**{"base_case": None, **changes}))
     ship, sea, chart = open_project_inputs(project)
     return run_project(project, ship=ship, sea=sea, chart=chart)
 
@@ -717,3 +717,33 @@ def test_a_project_on_the_tide_of_a_real_model_for_another_year():
     project = san_diego(start="2030-01-01T00:00Z", days=2, tides=["M2"])
     ship, sea, chart = open_project_inputs(project)
     assert run_project(project, ship=ship, sea=sea, chart=chart).optimised.feasible
+
+
+def test_the_last_cycle_of_a_fixed_load_has_the_draught_of_what_is_left(tmp_path):
+    """3,000 of 4,500 m3 at full draught wait for a higher tide than their own."""
+    asked = deep_sea(tmp_path / "bed.nc", bed=True) | {"ship": "hopper-dredger"}
+    asked |= {"volume_m3": 7_000, "hopper_m3": 4_000, "load_factors": [0.5, 0.75, 1.0]}
+    ends = [asked["load"], asked["unload"]]
+    for load, last in ((1.0, 0.75), (0.75, 0.5), (0.9, 0.9)):
+        found = sail(**asked | {"base_case": {"route": ends, "load_factor": load}}).base.cycles
+        assert [c.load_factor for c in found[:-1]] == [load] * (len(found) - 1)
+        assert found[-1].load_factor == last
+        assert found[-1].volume == pytest.approx(7_000 - 4_000 * load * (len(found) - 1))
+
+
+def test_the_answer_never_takes_longer_than_the_base_case(tmp_path):
+    """The best of each cycle overflows no hopper and needs a fourth cycle, for 1,200 m3."""
+    asked = deep_sea(tmp_path / "bed.nc", bed=True) | {"ship": "hopper-dredger"}
+    asked |= {"volume_m3": 12_000, "hopper_m3": 4_000, "load_factors": [0.9, 1.0]}
+    asked |= {"loading": {"minutes": [0, 30, 60], "share": [0, 0.9, 1.0]}}
+    greedy = sail(**asked).optimised
+    assert [c.volume for c in greedy.cycles] == pytest.approx([3_600, 3_600, 3_600, 1_200])
+    ends = [asked["load"], asked["unload"]]
+    result = sail(**asked | {"base_case": {"route": ends, "load_factor": 1.0}})
+    assert len(result.base.cycles) == 3 and not result.base.notes
+    assert result.base.totals["duration_days"] < greedy.totals["duration_days"]
+    assert result.optimised.name == "optimised"
+    assert [c.volume for c in result.optimised.cycles] == pytest.approx([4_000] * 3)
+    assert result.gains()["production_gain"] >= 0.0
+    (note,) = result.optimised.notes
+    assert "base case" in note and "takes 4 cycles" in note and "the base case 3 cycles" in note

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -69,7 +69,8 @@ class Simulator:
 
     Parameters
     ----------
-    factors : Loads to choose from; default: those of the project.
+    factors : Loads to choose from; default: those of the project. The last cycle may also take a
+        lighter one of the project that holds all that is left.
     report : Called with a short text every ten cycles.
     on_cycle : Called with the name of the run and each cycle.
     name : Name of the run, for errors.
@@ -91,11 +92,17 @@ class Simulator:
         self.leg_planner = SiteLegPlanner(environment, site_network)
         back = self.leg_planner.profile_search(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
-        self.both = [
-            RoundTrip(x, self.leg_planner.profile_search(x, outward=True), replace(back))
-            for x in sorted(set(chosen))
-            if x > 0.0
-        ]
+        lighter = {x for x in project.work.load_factors if x < max(chosen)} - set(chosen)
+
+        def round_trips(loads: Iterable[float]) -> list[RoundTrip]:
+            return [
+                RoundTrip(x, self.leg_planner.profile_search(x, outward=True), replace(back))
+                for x in sorted(loads)
+                if x > 0.0
+            ]
+
+        self.both = round_trips(set(chosen))
+        self.of_last_cycle = round_trips(lighter)
         sites, period = environment.sites, environment.period
         self.at_load, self.at_unload = (
             WorkWindows.at_site(place, period, ship=environment.ship, sea=environment.sea)
@@ -138,7 +145,8 @@ class Simulator:
         """Return the loads for the next cycle, by descending upper bound of production."""
         work = self.project.work
         options = []
-        for both in self.both:
+        holding = [b for b in self.of_last_cycle if b.load_factor * work.hopper >= left]
+        for both in sorted([*self.both, *holding], key=lambda one: one.load_factor):
             volume = min(left, both.load_factor * work.hopper)
             share = volume / work.hopper
             fastest = both.full.shortest + both.empty.shortest

@@ -112,7 +112,8 @@ class BaseCase:
     route : tuple of (lat, lon)
         From the loading site to the unloading site [deg].
     load_factor : float or "best"
-        The same load in all cycles, or in each cycle the one with the highest production.
+        The same load in all cycles but the last, which takes the smallest listed one that holds
+        what is left, or in each cycle the one with the highest production.
     """
 
     route: tuple[Position, ...]

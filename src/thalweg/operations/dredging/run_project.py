@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -93,8 +94,9 @@ def run_project(
     ship is back at the loading site. For every load factor the legs out and back are searched
     exactly on the network (`thalweg.search.profile_search`), and the load with the highest
     production is taken, as in van Halem (2019), section 3.2.1. The choice is greedy: the effect on
-    later cycles is ignored. The referee then evaluates every leg in small steps; its times are
-    those of the project.
+    later cycles is ignored. Where the base case takes less time in all, its load on the best routes
+    is tried, and the base case itself is the answer if that takes longer too; a note says so. The
+    referee then evaluates every leg in small steps; its times are those of the project.
     """
     report: MessageCallback = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
@@ -122,9 +124,52 @@ def run_project(
         except OutsidePeriodError as error:  # the optimised run is a result without it
             note = f"Without the base case: {error.asked} {error.possible}"
             optimised = replace(optimised, notes=(*optimised.notes, note))
+        else:
+            if base.feasible and _takes_longer(optimised, base):
+                optimised = _no_slower_run(project, environment, site_network, optimised, base)
     return ProjectResult(
         project, environment, optimised, base, _provenance(environment, site_network)
     )
+
+
+def _no_slower_run(
+    project: Project,
+    environment: ProjectEnvironment,
+    site_network: SiteNetwork,
+    greedy: ProjectRun,
+    base: ProjectRun,
+) -> ProjectRun:
+    """Return a run that takes no longer than the base case, where the greedy choice does.
+
+    The load of the base case is sailed on the network; if that takes longer too, the base case is
+    the answer.
+    """
+    loads = {cycle.load_factor for cycle in base.cycles}
+    found: ProjectRun | None = None
+    if project.base is not None and project.base.load_factor != BEST_LOAD_FACTOR:
+        with contextlib.suppress(OutsidePeriodError, NoRouteError):
+            found = _simulate_run(
+                project, environment, site_network, (float(project.base.load_factor),),
+                name=OPTIMISED, watch=_Watch(lambda text: None, None),
+            )  # fmt: skip
+    why = (
+        "the load of greatest production, chosen cycle by cycle without those that follow, takes "
+        f"{_cycles_and_days(greedy)} in all, the base case {_cycles_and_days(base)}"
+    )
+    if found is None or _takes_longer(found, base):
+        note = f"The loads and routes are those of the base case: {why}."
+        return replace(base, name=OPTIMISED, notes=(*base.notes, note))
+    note = f"Every cycle has the load of the base case, {max(loads):g}, where it is full: {why}."
+    return replace(found, notes=(*found.notes, note))
+
+
+def _cycles_and_days(run: ProjectRun) -> str:
+    return f"{run.totals['cycles']} cycles and {run.totals['duration_days']:.2f} days"
+
+
+def _takes_longer(run: ProjectRun, other: ProjectRun) -> bool:
+    """Return whether a run produces less than another, of the same volume."""
+    return run.cycles[-1].end > other.cycles[-1].end
 
 
 def _simulate_run(
