@@ -12,6 +12,7 @@ from thalweg.core.errors import InputError
 from thalweg.kernels import codes
 from thalweg.kernels.leg.point_speed import point_speed
 from thalweg.kernels.leg.table_lookup import axes_needed
+from thalweg.planning.report.route_summary import route_items
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
@@ -176,6 +177,70 @@ def test_following_seas_forbid_high_speed_only():
     assert not only.limits.safety.forbids(only.speeds, **low).any()
 
 
+def _evaluated(limits, *, speed_kn=12, height=4.0, period=9.0, places=None):
+    uniform = {
+        "sea_surface_wave_significant_height": height,
+        "sea_surface_wave_to_direction": 180.0,
+        "sea_surface_wave_period_at_variance_spectral_density_maximum": period,
+    }
+    sea = Sea.from_functions(
+        {name: lambda t, lat, lon, x=x: x + 0 * lat for name, x in uniform.items()}
+    )
+    ship = _ship(limits, **({"places": places} if places else {}))
+    north = [(40.0, -30.0), (41.0, -30.0)]
+    return evaluate(north, ship=ship, sea=sea, depart="2026-01-01T00:00Z", speed_kn=speed_kn), ship
+
+
+def test_a_broken_limit_is_named_with_place_exposure_value_and_limit():
+    """Motions at 12 kn in head seas; each limit is a violation of its own."""
+    limits = {"max_vertical_acceleration_m_s2": 0.3, "max_motion_sickness_percent": 10}
+    limits |= {"acceleration_at_m": 60.0, "motion_sickness_at_m": -40.0, "motion_sickness_hours": 4}
+    route, _ = _evaluated(limits)
+    by_reason = {one.reason.partition(": ")[2]: one for one in route.violations}
+    assert set(by_reason) == {
+        "vertical acceleration at 60 m ahead of midship",
+        "motion sickness in 4 h at 40 m abaft midship",
+    }
+    at = {"height": 4.0, "period": 9.0, "speed": 12 * 1852 / 3600, "wave_angle": 0.0}
+    bow, aft = (ship_response(**at, hull=MOTIONS, forward=x) for x in (60.0, -40.0))
+    found = by_reason["vertical acceleration at 60 m ahead of midship"]
+    assert found.value == pytest.approx(float(np.sqrt(bow.acceleration.m0)), rel=0.02)
+    assert found.limit == pytest.approx(0.3) and " m/s2, limit 0.3" in str(found)
+    sick = by_reason["motion sickness in 4 h at 40 m abaft midship"]
+    weighted = weighted_acceleration(aft.acceleration_parts, aft.encounter_frequency)
+    dose = motion_sickness_dose(weighted, duration=4 * 3600.0)
+    assert sick.value == pytest.approx(float(motion_sickness_percent_iso(dose)), rel=0.02)
+    assert sick.limit == pytest.approx(10.0) and " %, limit 10.00 %)" in str(sick)
+
+
+@pytest.mark.parametrize(
+    ("danger", "name", "half"),
+    [("synchronous_roll", "synchronous roll", 1.0), ("parametric_roll", "parametric roll", 0.5)],
+)
+def test_resonance_is_named_with_the_periods_of_encounter(danger, name, half):
+    period = 20.0 if half == 1.0 else 11.5  # encounters near 14 s and 7 s at 12 kn in head seas
+    route, _ = _evaluated({"msc_circ_1228": [danger]}, period=period)
+    (found,) = route.violations
+    assert found.reason == f"safety or comfort limit of the ship: {name}"
+    assert abs(found.value / (14.0 * half) - 1.0) < 0.1 + 1e-9
+    side = 1.1 if found.value >= 14.0 * half else 0.9
+    assert found.limit == pytest.approx(14.0 * half * side)
+    assert " s, limit " in str(found)
+
+
+def test_the_summary_states_exposure_and_limit_of_sickness():
+    """The limit is for 2 h amidships, the figure for the whole voyage at the place."""
+    limits = {"max_motion_sickness_percent": 40}
+    route, ship = _evaluated(limits, height=2.0, places={"wheelhouse": 40.0})
+    (weather,) = [t for word, t in route_items(route, sea=None, chart=None, ship=ship)
+                  if word == "Weather"]  # fmt: skip
+    percent = route.indicators["places"]["wheelhouse"]["sick_percent"]
+    assert (
+        f"; sick after the whole voyage: wheelhouse {percent:.0f} % (limit: 40 % in 2 h amidships)"
+        in weather
+    )
+
+
 def test_the_height_from_which_waves_are_a_danger_can_be_set():
     ship = _ship({"msc_circ_1228": ["surf_riding"], "danger_from_wave_height_m": 0.5})
     at = {"wave_angle": math.pi, "wave_height": 0.6, "wave_period": 5.0}
@@ -198,7 +263,11 @@ def test_the_referee_lists_where_the_ship_breaks_its_safety_limits():
         evaluate(north, ship=only, sea=sea, depart="2026-01-01T00:00Z", speed_kn=speed)
         for speed in (24, 18)
     )
-    assert [v.reason for v in fast.violations] == [codes.REASONS[codes.SAFETY]]
+    (found,) = fast.violations
+    assert found.reason == "safety or comfort limit of the ship: surf-riding"
+    assert found.value == pytest.approx(fast.samples["speed_through_water"].max())
+    assert found.limit == pytest.approx(1.8 * math.sqrt(150.0) * 1852 / 3600, rel=1e-3)
+    assert " kn, limit 22.05 kn)" in str(found) and found.as_dict()["limit"] == found.limit
     assert slow.violations == ()
     against = evaluate(north[::-1], ship=only, sea=sea, depart="2026-01-01T00:00Z", speed_kn=24)
     assert against.violations == ()

@@ -20,6 +20,7 @@ from thalweg.route.indicator_columns import indicator_table, indicator_value
 from thalweg.route.number_texts import amount_text
 from thalweg.route.route_tables import waypoint_frame, waypoint_rows
 from thalweg.route.track import Track
+from thalweg.ship.comfort.seaway_limit_names import SEAWAY_UNITS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,6 +38,7 @@ _UNITS: Final = MappingProxyType(
         codes.REASONS[codes.WIND_SPEED]: (KNOT, " kn"),
         codes.REASONS[codes.OFFING]: (NAUTICAL_MILE, " nm"),
         SPEED_NOT_PREDICTED: (0.01, " % of the speed left"),
+        **{f"{codes.REASONS[codes.SAFETY]}: {one}": unit for one, unit in SEAWAY_UNITS.items()},
     }
 )
 _MOST_DIGITS = 9  # after the point, of numbers that differ little
@@ -55,7 +57,8 @@ class Violation:
     lat, lon : float
         Position [deg] of the worst point of the stretch.
     value, limit : float
-        Value found there and value allowed, in SI; NaN where there is no number.
+        Value found there and value allowed, in SI (people sick in per cent); NaN where there is
+        no number.
     """
 
     reason: str

@@ -28,6 +28,7 @@ from thalweg.ship.methods.seakeeping.ship_motions import (
     vertical_motion,
 )
 from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import (
+    DangerousSituations,
     dangerous_situations,
     roll_period,
     surf_riding_speed,
@@ -69,6 +70,26 @@ class DangerousSituationLimits:
     roll_tolerance: float
     harmless_wave_height: float
 
+    def in_waves(
+        self,
+        speed: FloatArray,
+        angle: FloatArray,
+        height: FloatArray,
+        period: FloatArray,
+        length: float,
+    ) -> DangerousSituations:
+        """Return the situations of a ship of a length [m] in waves of a peak period [s]."""
+        return dangerous_situations(
+            speed=speed,
+            wave_angle=angle,
+            wave_height=height,
+            wave_period=MEAN_TO_PEAK_PERIOD_RATIO * period,
+            length=length,
+            roll_period=None if math.isnan(self.roll_period) else self.roll_period,
+            roll_tolerance=self.roll_tolerance,
+            harmless_wave_height=self.harmless_wave_height,
+        )
+
 
 @dataclass(frozen=True)
 class AccelerationLimit:
@@ -79,11 +100,13 @@ class AccelerationLimit:
     greatest : Root mean square [m/s2].
     forward : Ahead of midship on the centre line [m].
     weighted : Weighted for motion sickness (W_f of ISO 2631-1).
+    exposure : Time on board for which it is a limit of sickness [s].
     """
 
     greatest: float
     forward: float
     weighted: bool = False
+    exposure: float = EXPOSURE_TIME
 
     def ratio_to_limit(
         self,
@@ -179,17 +202,7 @@ class SafetyLimits:
         bad = np.zeros(speed.shape, bool)
         if self.situation_limits is None:
             return bad
-        rolls = self.situation_limits.roll_period
-        checks = dangerous_situations(
-            speed=speed,
-            wave_angle=angle,
-            wave_height=height,
-            wave_period=MEAN_TO_PEAK_PERIOD_RATIO * period,
-            length=self.hull.length,
-            roll_period=None if math.isnan(rolls) else rolls,
-            roll_tolerance=self.situation_limits.roll_tolerance,
-            harmless_wave_height=self.situation_limits.harmless_wave_height,
-        )
+        checks = self.situation_limits.in_waves(speed, angle, height, period, self.hull.length)
         for name in self.situation_limits.dangers:
             bad |= getattr(checks, name)
         return bad
@@ -350,7 +363,8 @@ def _acceleration_limits(given: LimitsSection) -> tuple[AccelerationLimit, ...]:
     if given.max_motion_sickness_percent is not None:
         dose = given.max_motion_sickness_percent / MIXED_ADULT_SUSCEPTIBILITY
         greatest = dose / math.sqrt(given.motion_sickness_hours * HOUR)
-        found.append(AccelerationLimit(greatest, given.motion_sickness_at_m, weighted=True))
+        place, time = given.motion_sickness_at_m, given.motion_sickness_hours * HOUR
+        found.append(AccelerationLimit(greatest, place, weighted=True, exposure=time))
     return tuple(found)
 
 

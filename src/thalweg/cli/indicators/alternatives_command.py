@@ -25,7 +25,8 @@ _IN_TABLE: Final = (
 )  # fmt: skip
 #: What their names in the table mean.
 _MEANINGS: Final = {
-    "sick_percent": "sick: share of people seasick at the first place of the ship file",
+    "sick_percent": "sick: share of people seasick after the whole voyage at the first place of "
+    "the ship file",
     "max_acceleration": "acceleration: greatest root mean square there, vertical",
     "encounters": "encounters: ships expected to be met",
     "inshore_percent": "inshore: share of the whole length within 3 nm of land",

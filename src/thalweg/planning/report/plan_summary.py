@@ -96,7 +96,10 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     if plan.front is not None and len(plan.routes) > 1:
         items.append(("Choice", _choice(plan)))
     items += [
-        ("Weather", weather_text(best, _sea(plan)) + sickness_text(best)),
+        (
+            "Weather",
+            weather_text(best, _sea(plan)) + sickness_text(best, known.ship if known else None),
+        ),
         ("Depth", least_clearance_text(best)),
     ]
     items += [("Limits", limits_text(plan)), ("Quality", quality_text(plan))]

@@ -20,6 +20,7 @@ from thalweg.planning.report.waiting_report import WAITS
 from thalweg.route.number_texts import amount_text, miles_text
 from thalweg.sea.fill_policies import is_calm_layer
 from thalweg.sea.models.cyclone_layer import AmbientSea, StormLayer
+from thalweg.ship.comfort.broken_seaway_limits import sickness_limit_text
 from thalweg.ship.fuel_prices import FACTOR_OF_REQUEST, FACTOR_OF_SHIP_FILE
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def route_items(
         ("Distance", distance_text(route, canals)),
         ("Fuel", fuel_text(route)),
         ("Cost", cost_text(route, canals)),
-        ("Weather", weather_text(route, sea) + sickness_text(route)),
+        ("Weather", weather_text(route, sea) + sickness_text(route, ship)),
         ("Depth", least_clearance_text(route)),
         *(("Limits", text) for text in limits),
     ]
@@ -250,8 +251,11 @@ def weather_on_route(route: Route, sea: Sea | None) -> dict[str, np.ndarray]:
     return found
 
 
-def sickness_text(route: Route) -> str:
-    """Return the share of people sick at each place of the ship; empty where it has none."""
+def sickness_text(route: Route, ship: Ship | None) -> str:
+    """Return the share of people sick at each place of the ship; empty where it has none.
+
+    The limit of the ship file holds for another exposure, and mostly at another place.
+    """
     found = route.indicators
     places = [
         f"{name} {row['sick_percent']:.0f} %"
@@ -260,7 +264,10 @@ def sickness_text(route: Route) -> str:
     ]
     roll = found.get("max_roll_rms_deg")
     rolling = "" if roll is None else f"; roll to {roll:.1f} deg (root mean square)"
-    return f"; sick: {', '.join(places)}{rolling}" if places else ""
+    allowed = sickness_limit_text(None if ship is None else ship.limits.safety)
+    limit = f" (limit: {allowed})" if allowed else ""
+    whole = "sick after the whole voyage"
+    return f"; {whole}: {', '.join(places)}{limit}{rolling}" if places else ""
 
 
 def least_clearance_text(route: Route) -> str:

@@ -27,6 +27,7 @@ from thalweg.route.referee.sailing_physics import (
 from thalweg.route.route import SPEED_NOT_PREDICTED, Violation
 from thalweg.route.track import Track
 from thalweg.sea.standard_names import plain_names
+from thalweg.ship.comfort.broken_seaway_limits import broken_seaway_limits
 from thalweg.ship.condition_variables import (
     EASTWARD_WIND,
     NORTHWARD_WIND,
@@ -246,7 +247,7 @@ def stoppage_violations(
 def seaway_violations(
     world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
 ) -> list[Violation]:
-    """Return where the ship exceeds its limits of safety and comfort in waves."""
+    """Return where the ship exceeds its limits of safety and comfort in waves, each limit apart."""
     safety = world.ship.limits.safety
     if safety is None:
         return []
@@ -255,11 +256,21 @@ def seaway_violations(
     bad = safety.forbids(
         speed, wave_angle=at.wave_angle, wave_height=height, wave_period=at.wave_period
     )
-    bad &= np.isfinite(time) & np.isfinite(motion.speed_over_ground)
-    return [
-        _violation_at(REASONS[codes.SAFETY], points, time, first, float(height[first]), math.nan)
-        for first, _ in _stretches(bad, points.leg)
-    ]
+    index = np.flatnonzero(bad & np.isfinite(time) & np.isfinite(motion.speed_over_ground))
+    waves = (np.broadcast_to(x, bad.shape)[index] for x in (at.wave_angle, height, at.wave_period))
+    angle, height, period = waves
+    found = []
+    for one in broken_seaway_limits(
+        safety, speed=speed[index], wave_angle=angle, wave_height=height, wave_period=period
+    ):
+        broken, value, limit = np.zeros(bad.shape, bool), np.zeros(bad.shape), np.zeros(bad.shape)
+        broken[index], value[index], limit[index] = one.broken, one.value, one.limit
+        reason = f"{REASONS[codes.SAFETY]}: {one.name}"
+        for first, last in _stretches(broken, points.leg):
+            worst = first + int(np.argmax(np.abs(value[first:last] - limit[first:last])))
+            numbers = (float(value[worst]), float(limit[worst]))
+            found.append(_violation_at(reason, points, time, worst, *numbers))
+    return found
 
 
 def unpredicted_speed_violations(

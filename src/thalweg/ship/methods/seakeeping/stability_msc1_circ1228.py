@@ -16,6 +16,7 @@ from thalweg.ship.methods.array_conversion import as_float_array
 SURF_RIDING_SECTOR: Final = float(np.radians(45.0))
 #: Encounter over wave period where successive high waves are met.
 HIGH_WAVE_RATIOS: Final = (1.8, 3.0)
+HIGH_WAVE_SHARE: Final = 0.04  #: of the ship's length, from which waves are high
 _WAVELENGTH: Final = 1.56  # g / (2 pi), as the circular rounds it [m/s2]
 
 
@@ -236,7 +237,7 @@ def dangerous_situations(
     high_waves = np.maximum.reduce(
         [
             1.0 - _WAVELENGTH * tw**2 / (0.8 * size),
-            1.0 - hs / (0.04 * size),
+            1.0 - hs / (HIGH_WAVE_SHARE * size),
             np.maximum(low - ratio, ratio - high),
         ]
     )
