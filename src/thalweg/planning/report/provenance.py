@@ -101,8 +101,8 @@ def given_route_warnings(
     """Return the warnings about a route from a file, as those about the routes of a plan.
 
     These are on its year, ice, gaps of data, units and times that files do not state, weather that
-    the ship does not read, land, passages, traffic lanes, speeds of the file, depth and shoals.
-    the ship does not read, land, passages, traffic lanes, squat, depth and shoals.
+    the ship does not read, land, passages, traffic lanes, speeds of the file, squat, depth and
+    shoals.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def given_route_warnings(
     notes += unread_weather_notes(route, sea, ship)
     notes += waiting_weather_warnings(route, ship)
     notes += given_route_notes(route, chart=chart, ship=ship) + file_speed_notes(route)
-    notes += given_route_notes(route, chart=chart, ship=ship) + squat_notes(route, ship, min_ukc)
+    notes += squat_notes(route, ship, min_ukc)
     if route.min_ukc_m is not None:
         return notes
     return notes + depth_notes(chart, route, ship, min_ukc)
