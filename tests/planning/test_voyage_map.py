@@ -214,6 +214,24 @@ def test_profiles_have_times_in_utc_and_state_that_no_depth_is_known(lagoon):
     assert "not known" in profile.axes[-1].texts[0].get_text()
 
 
+def test_profiles_show_limits_of_weather_that_are_half_reached():
+    names = "eastward_wind", "northward_wind", "sea_surface_wave_significant_height"
+    sea = Sea.from_functions(
+        {name: (lambda t, lat, lon, v=v: v) for name, v in zip(names, (10.0, 0.0, 2.0))},
+        time_step=3600.0,
+    )
+    ship = Ship.simple(speed_kn=12.0, draught_m=5.0, max_wave_height_m=4.0, max_wind_speed_kn=45.0)
+    route = evaluate(
+        [(0.0, 0.0), (0.0, 0.5)], ship=ship, sea=sea, depart="2026-01-01", chart=Chart.open_water()
+    )
+    _, wind, waves, _ = draw_profile(route, limits=ship.limits).axes
+    assert waves.get_legend_handles_labels()[1] == ["significant wave height", "limit: 4 m"]
+    assert waves.get_ylim()[1] == pytest.approx(4.4)
+    assert wind.get_legend_handles_labels()[1] == ["wind"]  # 19 of 45 kn
+    _, _, plain, _ = draw_profile(route).axes
+    assert plain.get_legend_handles_labels()[1] == ["significant wave height"]
+
+
 @pytest.mark.slow
 def test_arrows_are_those_of_the_strong_currents():
     """Currents near zero have none, and the strongest reaches to the next arrow."""

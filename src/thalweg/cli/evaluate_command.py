@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     required = ship.min_under_keel_clearance if arguments.ukc is None else arguments.ukc
     files = []
     if arguments.out:
-        files = write_route(route, arguments.out, files_as, min_ukc=required)
+        files = write_route(route, arguments.out, files_as, min_ukc=required, limits=ship.limits)
     notes = given_route_warnings(route, chart=chart, sea=sea, ship=ship, min_ukc=required)
     notes += route.assumptions
     if arguments.json:

@@ -14,13 +14,19 @@ from thalweg.core.time import utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_labels import marked_times, time_label
 from thalweg.route import Route
+from thalweg.ship.ship_limits import ShipLimits
 
 _INK = "#22303c"
+_NEAR_LIMIT = 0.5  # share of a limit from which on it is drawn
 LIMIT_COLOUR = "#b71c1c"  #: of limits, and of water with less than is required
 
 
 def draw_profile(
-    route: Route, path: str | Path | None = None, *, min_ukc: float | None = None
+    route: Route,
+    path: str | Path | None = None,
+    *,
+    min_ukc: float | None = None,
+    limits: ShipLimits | None = None,
 ) -> Any:
     """Draw speeds, weather and clearance along a route and in its waits against the time in UTC.
 
@@ -29,6 +35,7 @@ def draw_profile(
     route : A route scored by the referee.
     path : Where to save it (PNG).
     min_ukc : Required under-keel clearance [m], which is drawn; by default zero.
+    limits : Of the ship; those of wind and waves are drawn where half of them is reached.
 
     Returns
     -------
@@ -36,8 +43,11 @@ def draw_profile(
         known; the clearance panel states if no depth is known.
     """
     route = replace(route, samples=route.samples_with_waits())
+    limits = limits or ShipLimits()
     depths = partial(_depths, min_ukc=min_ukc or 0.0)
-    panels = [panel for panel in (_speeds, _weather, _waves, depths) if panel(route, None)]
+    weather = partial(_weather, limit=limits.wind_speed / KNOT)
+    waves = partial(_waves, limit=limits.wave_height)
+    panels = [panel for panel in (_speeds, weather, waves, depths) if panel(route, None)]
     known = bool(np.isfinite(route.samples["under_keel_clearance"]).any())
     heights = [0.25 if panel is depths and not known else 1.0 for panel in panels]
     figure = new_figure(10, 1.2 + 1.9 * sum(heights), layout=None)
@@ -99,6 +109,12 @@ def _set_headroom(axes: Any) -> None:
     axes.set_ylim(0.0, 1.1 * top)
 
 
+def _draw_limit(axes: Any, values: np.ndarray, limit: float, unit: str) -> None:
+    """Draw a limit where values come near it."""
+    if np.nanmax(values, initial=0.0) >= _NEAR_LIMIT * limit:
+        axes.axhline(limit, color=LIMIT_COLOUR, lw=0.8, label=f"limit: {limit:.3g} {unit}")
+
+
 def _magnitude(route: Route, east: str, north: str) -> np.ndarray | None:
     if east not in route.samples or north not in route.samples:
         return None
@@ -106,12 +122,13 @@ def _magnitude(route: Route, east: str, north: str) -> np.ndarray | None:
     return speed if np.nanmax(speed, initial=0.0) > 0 else None
 
 
-def _weather(route: Route, axes: Any | None) -> bool:
+def _weather(route: Route, axes: Any | None, limit: float) -> bool:
     wind = _magnitude(route, "eastward_wind", "northward_wind")
     current = _magnitude(route, "eastward_sea_water_velocity", "northward_sea_water_velocity")
     if axes is not None:
         if wind is not None:
             _plot(axes, route, wind, "wind", "#6a1b9a")
+            _draw_limit(axes, wind, limit, "kn")
         if current is not None:
             _plot(axes, route, current, "current", "#00838f")
         known = ((wind, "wind"), (current, "current"))
@@ -120,12 +137,13 @@ def _weather(route: Route, axes: Any | None) -> bool:
     return wind is not None or current is not None
 
 
-def _waves(route: Route, axes: Any | None) -> bool:
+def _waves(route: Route, axes: Any | None, limit: float) -> bool:
     height = route.samples.get("sea_surface_wave_significant_height")
     if height is None or not np.nanmax(height, initial=0.0) > 0:
         return False
     if axes is not None:
         _plot(axes, route, height, "significant wave height", "#2e7d32")
+        _draw_limit(axes, height, limit, "m")
         axes.set_ylabel("waves [m]")
         _set_headroom(axes)
     return True

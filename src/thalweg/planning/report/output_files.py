@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.sea.layer import Layer
     from thalweg.ship import Ship
+    from thalweg.ship.ship_limits import ShipLimits
 
 
 def write_plan(
@@ -67,8 +68,10 @@ def write_plan(
     route, own = keeping_limits(plan, plan.best, options)
     files = [folder / "plan.json", *write_route_files(route, folder, options=own)]
     draw_map(plan, folder / "map.png", beside=beside)
-    draw_profile(plan.best, folder / "profile.png", min_ukc=_required_clearance(plan))
-    files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
+    limits = None if plan.plot_context is None else plan.plot_context.ship.limits
+    profile = folder / "profile.png"
+    draw_profile(plan.best, profile, min_ukc=_required_clearance(plan), limits=limits)
+    files += [folder / "map.png", profile, *write_space_time_diagram(plan, folder)]
     return files if plan.front is None else files + _write_front(plan, folder, options)
 
 
@@ -181,18 +184,19 @@ def write_route(
     options: RouteFileOptions | None = None,
     *,
     min_ukc: float | None = None,
+    limits: ShipLimits | None = None,
 ) -> list[Path]:
     """Write a route as route.json, in all formats, and its profile; return the files.
 
     Parameters
     ----------
-    min_ukc : Required under-keel clearance [m], which the profile shows.
+    min_ukc, limits : Required under-keel clearance [m] and limits of the ship, for the profile.
     """
     folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
     write_text(folder / "route.json", text + "\n")
     files = [folder / "route.json", *write_route_files(route, folder, options=options)]
-    draw_profile(route, folder / "profile.png", min_ukc=min_ukc)
+    draw_profile(route, folder / "profile.png", min_ukc=min_ukc, limits=limits)
     return [*files, folder / "profile.png"]
 
 
