@@ -108,7 +108,7 @@ def test_resistance_components_add_up(ship):
 def test_power_is_resistance_times_speed_over_efficiency(ship):
     c = Conditions(**CALM)
     total = ship.resistance(c, 7.0)["total"]
-    efficiency = 0.60 * 0.98 * 1.0 * 0.98 * 0.96
+    efficiency = 0.60 * 0.98 * 1.0 * 0.98  # a slow-speed engine has no gear
     assert float(ship.power_at_speed(c, 7.0)) == pytest.approx(float(total) * 7.0 / efficiency)
 
 
@@ -429,8 +429,17 @@ def test_engine_types_are_words_and_fuels_they_cannot_burn_are_named():
         _ship(engine={"power_kw": 9000, "type": "slow_speed_disel"})
 
 
-def test_the_usual_gear_of_a_slow_engine_says_that_it_may_have_none():
-    """4 % of the power of a direct drive went into a gear that it has not, without a word."""
-    (gear,) = [e for e in Ship.load("yu-single-screw-169m").estimated if e.key == "gear_efficiency"]
-    assert gear.value == 0.96 and gear.method.startswith("usual value, Schless (2023); slow-speed")
-    assert "directly: then give 1" in gear.method
+def test_a_slow_speed_engine_has_no_gear_unless_the_file_says_so():
+    def gear(engine, **propulsion):
+        ship = _ship(engine={"power_kw": 9000, "type": engine}, propulsion=propulsion)
+        power = float(ship.power_at_speed(Conditions(**CALM), 7.0))
+        estimated = [(e.value, e.method) for e in ship.estimated if e.key == "gear_efficiency"]
+        return power, estimated
+
+    slow, (direct,) = gear("slow_speed_diesel")
+    geared, (usual,) = gear("medium_speed_diesel")
+    given, none = gear("slow_speed_diesel", gear_efficiency=0.96)
+    assert direct == (1.0, "no gear: slow-speed engines drive the propeller directly")
+    assert usual == (0.96, "usual value, Schless (2023)") and none == []
+    assert geared / slow == pytest.approx(1.0 / 0.96, rel=1e-9)
+    assert given == pytest.approx(geared, rel=1e-9)

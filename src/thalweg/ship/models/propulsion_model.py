@@ -85,6 +85,9 @@ def _efficiencies(hull: Hull, given: PropulsionSection) -> PropulsionModel:
     return PropulsionModel("efficiencies", power, guessed)
 
 
+_NO_GEAR: Final = Estimate(
+    "gear_efficiency", 1.0, "no gear: slow-speed engines drive the propeller directly"
+)
 _HULL_INTERACTION_KEYS: Final = ("wake_fraction", "thrust_deduction")
 _EFFICIENCY_KEYS: Final = (
     "open_water_efficiency",
@@ -263,21 +266,15 @@ def build_propulsion(file: ShipFile, hull: Hull) -> PropulsionModel:
     name = file.models.propulsion
     if name not in PROPULSION_METHODS:
         raise unknown_name_error("propulsion method", name, PROPULSION_METHODS)
-    chain = PROPULSION_METHODS[name](hull, file.propulsion)
-    if file.engine.type == "slow_speed_diesel":
-        chain = replace(chain, estimated=tuple(map(_of_direct_drive, chain.estimated)))
+    given = file.propulsion
+    is_direct = file.engine.type == "slow_speed_diesel" and not given.gives("gear_efficiency")
+    if is_direct and name == "efficiencies":
+        chain = PROPULSION_METHODS[name](hull, given.model_copy(update={"gear_efficiency": 1.0}))
+        chain = replace(chain, estimated=(*chain.estimated, _NO_GEAR))
+    else:
+        chain = PROPULSION_METHODS[name](hull, given)
     margin = file.engine.sea_margin_percent
     return _with_sea_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
-
-
-def _of_direct_drive(estimate: Estimate) -> Estimate:
-    """Return an estimate; that of a gear says that slow engines mostly have none."""
-    if estimate.key != "gear_efficiency" or estimate.value == 1.0:
-        return estimate
-    method = (
-        f"{estimate.method}; slow-speed engines mostly drive the propeller directly: then give 1"
-    )
-    return replace(estimate, method=method)
 
 
 def _with_sea_margin(chain: PropulsionModel, factor: float) -> PropulsionModel:
