@@ -135,6 +135,11 @@ def test_a_route_over_land_is_compared_with_the_place_of_the_land(client, done):
     (note,) = row["notes"]  # both begin at 47 N 5 W
     assert note.startswith("It ends") and "same stretch" in note
     assert not row["feasible"] and row["violations"] == len(row["broken"]) >= 1
+    result = client.get(f"/api/v1/plans/{job['id']}/result").json()
+    assert any("under-keel clearance was not checked" in text for text in result["assumptions"])
+    of_member = client.post("/api/v1/evaluate", json={**order, "member": 1}).json()
+    refused = ended(client.get, of_member["id"])  # the sea has no members
+    assert refused["state"] == "failed" and "ensemble" in refused["problem"]["detail"]
     land = [one for one in row["broken"] if one["reason"].startswith("land")]
     assert land and all(47.0 < one["lat"] < 49.0 for one in land)
 

@@ -303,28 +303,32 @@ def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
 
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
+    from thalweg.planning.report.provenance import given_route_warnings
     from thalweg.route import evaluate
 
     request = EvaluationRequest.model_validate(order.request)
     request.check()
     stages("reading the ship, the sea and the coastline")
     world = open_world(request, order.files)
+    sea = world.sea if request.member is None else world.sea.member(request.member)
     stages("sailing the route")
     route = evaluate(
         order.files[request.route],
         ship=with_orders_of(world.ship, request),
-        sea=world.sea,
+        sea=sea,
         chart=world.chart,
         depart=request.depart,
         speed_kn=request.speed_kn,
         min_ukc=request.min_ukc_m,
         strict=False,
     )
+    ship, clearance = world.ship, request.min_ukc_m
+    min_ukc = ship.min_under_keel_clearance if clearance is None else clearance
+    warnings = given_route_warnings(route, chart=world.chart, sea=sea, ship=ship, min_ukc=min_ukc)
+    route = replace(route, assumptions=tuple(dict.fromkeys((*warnings, *route.assumptions))))
     folder = Path(order.folder)
     write_json_file(folder / "route.json", route.as_dict())
     write_route_result(route, folder, 1, request.route_files.options(), stem=order.stem)
-    ship, clearance = world.ship, request.min_ukc_m
-    min_ukc = ship.min_under_keel_clearance if clearance is None else clearance
     met = limits_met(route, ship=ship, chart=world.chart, min_ukc=min_ukc)
     write_json_file(folder / "limits.json", {"routes": [met]})
     return {

@@ -348,6 +348,7 @@ class EvaluationRequest(ShipAndSea):
         None, description="what is held at speed_kn; default: as the ship file orders"
     )
     min_ukc_m: float | None = Field(None, ge=0, lt=100, description="default: of the ship file")
+    member: int | None = Field(None, ge=0, lt=1000, description="of an ensemble, from 0")
     fuel_price_usd: float | None = Field(None, ge=0, le=1e5, description="per tonne")
     eca_price_factor: float | None = Field(
         None, gt=0, le=100, description="price of fuel inside control areas over that outside"
