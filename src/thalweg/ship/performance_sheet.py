@@ -19,8 +19,9 @@ from thalweg.ship.methods.carbon_intensity import (
     rating_boundaries,
     required_cii,
 )
+from thalweg.ship.models.known_speed_model import SpeedLossModel
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
-from thalweg.ship.models.kwon_speed_loss import LEAST_SPEED_SHARE
+from thalweg.ship.models.kwon_speed_loss import LEAST_SPEED_SHARE, predicted_share
 from thalweg.ship.models.propulsion_model import unused_efficiencies
 from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.models.speed_power_laws import speed_power_law_name
@@ -204,9 +205,10 @@ def _known_speed_rows(
     for k, speed in enumerate(np.unique(speeds)):
         attained = float(ordered.speed_through_water(conditions, k))
         notes = [str(n) for n in ordered.notes(conditions, k)]
-        if notes and attained < LEAST_SPEED_SHARE * speed:
+        share = _predicted_share(ordered, conditions, k, attained)
+        if share < LEAST_SPEED_SHARE:
             notes.append(
-                f"the method leaves {attained / speed:.0%} of the speed there, which is no "
+                f"the method leaves {share:.0%} of the speed there, which is no "
                 "prediction: no speed is given"
             )
             attained = np.nan
@@ -225,6 +227,14 @@ def _known_speed_rows(
             }
         )
     return rows
+
+
+def _predicted_share(ship: Ship, conditions: Conditions, setting: int, speed: float) -> float:
+    """Return the share of the speed that a speed loss outside its range leaves; 1 for others."""
+    if not isinstance(ship.model, SpeedLossModel):
+        return 1.0
+    loaded = conditions.with_default(load_factor=ship.loading.load_factor)
+    return float(predicted_share(ship.model, loaded, setting, np.asarray(speed)))
 
 
 def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
