@@ -52,5 +52,5 @@ def test_the_blizzard_of_january_1996():
     assert max(saves_everywhere(found)) > 2.0  # percent of the cost
     slowest = found.front.comparison.rows[-1]  # is caught by winds that leave her too little speed
     assert slowest["speed_kn"] < 10.0 and not slowest["feasible"] and slowest["saved"] is None
-    assert found.front.values[-1] < 0.9 * slowest["value"]
+    assert found.front.values[-1] < 0.95 * slowest["value"]
     assert any("Carter 1982" in note for note in found.notes)

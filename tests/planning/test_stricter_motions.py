@@ -10,7 +10,8 @@ import pytest
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.limits import TIGHTENING, Limits
-from thalweg.planning.indicators import candidate_routes, fastest_plan
+from thalweg.planning.indicators import candidate_routes
+from thalweg.planning.pareto import exploration
 from thalweg.planning.planning_context import PlanningContext, ShipTables
 from thalweg.planning.single import stretch
 from thalweg.ship import Ship
@@ -114,23 +115,18 @@ class _TradeOff:
         (None, 13.5, 26.1),
     ],
 )
-def test_the_fastest_of_a_plan_replaces_one_that_waits(
-    monkeypatch, table, planned, waiting, expected
-):
-    def plan(context, start, goal, window):
-        assert context.voyage.objective == "time" and window == (0.0, 0.0)
+def test_the_fastest_of_a_plan_replaces_one_that_waits(monkeypatch, planned, waiting, expected):
+    """For fronts and alternatives alike; the plan must use the same canals."""
+
+    def plan(trade_off):
         if planned is None:
             raise NoRouteError("No route.", "A test.", "None.")
-        return SimpleNamespace(route=planned)
+        return SimpleNamespace(route=planned, network=None)
 
-    monkeypatch.setattr(fastest_plan, "plan_stretch", plan)
-    monkeypatch.setattr(fastest_plan, "replace", _with)
-    context = SimpleNamespace(voyage=SimpleNamespace(objective="weighted", weights={"fuel": 1.0}))
+    monkeypatch.setattr(exploration, "_least_time_stretch", plan)
+    monkeypatch.setattr(exploration, "canals_used", lambda network, chart: ())
+    trade_off = SimpleNamespace(context=SimpleNamespace(chart=None))
     given = _route(True, 26.1, waiting)
-    found = fastest_plan.fastest_of_plan(context, ("start", "goal"), given)
-    assert found.time_h == expected
-    assert fastest_plan.fastest_of_plan(context, ("a", "via", "b"), given) is given
-
-
-def _with(given, **more):
-    return SimpleNamespace(**{**vars(given), **more})
+    for name, hours in ((exploration.OPEN_SEA, expected), ("Kiel Canal", 26.1)):
+        way = SimpleNamespace(name=name)
+        assert exploration._fastest_by_plan(trade_off, way, given).time_h == hours

@@ -36,7 +36,6 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
-from thalweg.planning.indicators.fastest_plan import fastest_of_plan
 from thalweg.planning.indicators.passage_ways import way_by_passage
 from thalweg.planning.indicators.ways_not_offered import canal_notes
 from thalweg.planning.network_selection.route_alternatives import (
@@ -206,8 +205,6 @@ class _Candidates:
         """Add the fastest route of an alternative; return it without water that has no data."""
         own = with_objective(self.trade_off, Objective.of("time", currency=self.currency))
         alternative, _horizon, route = fastest_in_known_water(own, alternative)
-        if not self.fastest_routes:
-            route = fastest_of_plan(self.context, self.trade_off.ends, route)
         self.routes.append(self._scored(route.track))
         self.fastest_routes.append(self.routes[-1])
         self.best.setdefault("time", self.routes[-1])

@@ -53,6 +53,9 @@ from thalweg.search.pareto.discretisation import TABLE_TOLERANCE
 
 #: Number of time bins of a front; refinement corrects what they miss.
 _TIME_BINS = 300
+#: Wait of a fastest route [h] from which on it is held against a plan of least time, and gain [s]
+#: from which on that one is taken.
+_LONG_WAIT, _EARLIER = 0.5, 60.0
 #: Settings, and tolerance of the tables of edges, where paths are refined.
 _REFINED_SETTINGS, _REFINED_TABLE_TOLERANCE = 8, 3e-3
 
@@ -158,7 +161,7 @@ def _fastest_route(
     track = track_from_result(alternative.network, first, horizon.setting)
     route, latest = refine_track(context, track, trade_off.limits), context.latest_arrival
     if first.arrive <= latest:
-        return horizon, route
+        return horizon, _fastest_by_plan(trade_off, alternative, route)
     if not (route.feasible and route.arrive <= latest + 1.0):
         stretch = _least_time_stretch(trade_off)
         alone = None if stretch is None else stretch.route
@@ -168,6 +171,25 @@ def _fastest_route(
         route = alone
     # in time as refined: paths of the network are longer, and those of its front may be later
     return replace(horizon, latest=first.arrive + 1.0), route
+
+
+def _fastest_by_plan(
+    trade_off: TradeOffContext, alternative: RouteAlternative, route: Route
+) -> Route:
+    """Return the route of a plan of least time where it is faster than one with a long wait.
+
+    Such a plan looks at later paths and finer networks, by which a ship that waits arrives earlier.
+    """
+    if not route.waiting_h > _LONG_WAIT:
+        return route
+    try:
+        stretch = _least_time_stretch(trade_off)
+    except NoRouteError:
+        return route
+    if stretch is None or not _is_of_canals(stretch, trade_off, alternative):
+        return route
+    other = stretch.route
+    return other if other.feasible and other.arrive < route.arrive - _EARLIER else route
 
 
 def _least_time_stretch(trade_off: TradeOffContext) -> StretchResult | None:
@@ -204,9 +226,17 @@ def _on_network_of_least_time(
         return None
     if stretch is None or not stretch.route.feasible:
         return None
+    if not _is_of_canals(stretch, trade_off, alternative):
+        return None
+    return replace(alternative, network=stretch.network, lattices=None)
+
+
+def _is_of_canals(
+    stretch: StretchResult, trade_off: TradeOffContext, alternative: RouteAlternative
+) -> bool:
+    """Return whether the network of a stretch has the canals of an alternative."""
     canals = " and ".join(canals_used(stretch.network, trade_off.context.chart))
-    same = (canals or OPEN_SEA) == alternative.name
-    return replace(alternative, network=stretch.network, lattices=None) if same else None
+    return (canals or OPEN_SEA) == alternative.name
 
 
 def network_pareto_front(
