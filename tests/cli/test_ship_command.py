@@ -16,6 +16,7 @@ from thalweg.cli.ship.ship_sheet_table import merged_notes
 from thalweg.core.errors import InputError, ModelRangeError
 from thalweg.ship import Ship
 from thalweg.ship.comfort.onboard_motions import onboard_motions
+from thalweg.ship.performance_sheet import performance_sheet
 
 KEYS = {
     *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
@@ -452,3 +453,12 @@ def test_a_speed_that_is_no_prediction_is_not_missing_data_of_the_ship_file(caps
     words = " ".join(text.split())
     assert "waves are given, which this ship's models do not count" in words
     assert "no speed is given" in words and "CII: add" not in words
+
+
+def test_fuel_beyond_the_power_of_the_engines_is_no_missing_entry(capsys, ship_file):
+    """It asked for an engine and a fuel that the file has."""
+    weather = {"wave_height": 6.0, "wave_angle": 0.0, "wave_period": 10.0}
+    sheet = performance_sheet(Ship.load(ship_file), weather, speeds_kn=[15.0])
+    (row,) = sheet["conditions"]
+    assert row["brake_power_kw"] > 9000.0 and row["fuel_kg_per_h"] is None
+    assert sheet["missing"] == []

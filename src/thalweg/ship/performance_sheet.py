@@ -329,6 +329,11 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
             "power: add engine.reference_power_kw with engine.reference_speed_kn, a column "
             "power_kw to table, or a resistance method as models.calm_water"
         )
+    overloaded = known("brake_power_kw") and all(
+        row["fuel_kg_per_h"] is not None for row in _settings(ship, sheet_conditions(ship, {}))
+    )
+    if not known("fuel_kg_per_h") and overloaded:
+        return missing  # it is known at less power
     if not known("fuel_kg_per_h"):
         keys = "add engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
         table = "add what power needs, or table.fuel_t_per_day"

@@ -77,7 +77,11 @@ def arrival_text(route: Route) -> str:
     """Return the arrival and the time from departure, waits named."""
     if not math.isfinite(route.arrive):
         return "never: the route cannot be sailed to its end"
-    waits = f", of it waiting {duration_text(route.waiting_h * HOUR)}" if route.waiting_h >= 1.0 / 60.0 else ""
+    waits = (
+        f", of it waiting {duration_text(route.waiting_h * HOUR)}"
+        if route.waiting_h >= 1.0 / 60.0
+        else ""
+    )
     return f"{utc_text(route.arrive)}, after {duration_text(route.arrive - route.depart)}{waits}"
 
 

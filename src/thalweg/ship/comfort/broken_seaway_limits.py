@@ -80,6 +80,10 @@ def broken_seaway_limits(
     own = safety.situation_limits
     if own is not None:
         met = own.in_waves(speed, wave_angle, wave_height, wave_period, safety.hull.length)
+        near = (
+            f"encounter period within {own.roll_tolerance:.0%} of the roll period of "
+            f"{own.roll_period:.3g} s"
+        )
         known = {
             "surf_riding": (
                 SURF_RIDING_NAME,
@@ -91,8 +95,14 @@ def broken_seaway_limits(
                 wave_height,
                 np.full(speed.shape, HIGH_WAVE_SHARE * safety.hull.length),
             ),
-            "synchronous_roll": (SYNCHRONOUS_ROLL_NAME, *_periods(own, met, halved=False)),
-            "parametric_roll": (PARAMETRIC_ROLL_NAME, *_periods(own, met, halved=True)),
+            "synchronous_roll": (
+                f"{SYNCHRONOUS_ROLL_NAME}, {near}",
+                *_periods(own, met, halved=False),
+            ),
+            "parametric_roll": (
+                f"{PARAMETRIC_ROLL_NAME}, {near} or half of it",
+                *_periods(own, met, halved=True),
+            ),
         }
         found += [
             BrokenSeawayLimit(known[danger][0], getattr(met, danger), *known[danger][1:])
