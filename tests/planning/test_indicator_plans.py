@@ -413,6 +413,27 @@ def test_routes_by_other_canals_are_not_called_the_same_way(monkeypatch):
     assert "the way of route" not in named_routes(*own)[1].difference
 
 
+def test_a_slower_route_has_the_way_of_the_nearest_length():
+    """It had that of the first that differs little, 20 nm longer than the one it sails."""
+    share = np.linspace(0.0, 1.0, 9)
+    zigzag = np.where(np.arange(9) % 2, 0.06, 0.0)
+    ways = list(zip(54.0 + share + zigzag, 1.0 + 3.0 * share)), [(54.0, 1.0), (55.0, 4.0)]
+    fast, slow = (Ship.simple(speed_kn=speed, draught_m=5.0) for speed in (12.0, 8.0))
+    around, straight, late = (
+        evaluate(way, ship=ship, sea=Sea.calm(), depart=DEPART)
+        for way, ship in ((ways[0], fast), (ways[1], fast), (ways[1], slow))
+    )
+    water = Chart.open_water(53.0, 56.0, 0.0, 5.0)
+    routes = [around, straight, late]
+    third = named_routes(routes, routes, water, slow.file.hull)[2]
+    assert third.difference.startswith("the way of route 2, slower:")
+    two = [around, late]
+    second = named_routes(two, two, water, slow.file.hull)[1]
+    miles = late.distance_nm - around.distance_nm
+    assert miles < -1.2
+    assert second.difference.startswith(f"the way of route 1, slower and {miles:+.0f} nm:")
+
+
 @pytest.mark.slow
 def test_least_fuel_is_that_of_the_plan_also_on_the_way_of_the_fastest(ship, chart):
     """With time to spare all places went to other waters: 'least fuel' was the fastest route."""

@@ -37,6 +37,7 @@ _KINDS: Final = frozenset(
     ]
 )
 _INSHORE, _OFFSHORE = 50.0, 15.0  # share of the length near land above and below which [%]
+_SAME_LENGTH: Final = 0.01  # share by which the lengths of one way may differ
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +103,16 @@ def named_routes(
         words_of_it = difference_in_words(values[k], values[0]) if k else "the fastest"
         difference = words_of_it + waiting_in_words(route)
         alike = (j for j in range(k) if (canals[k], passes[k]) == (canals[j], passes[j]))
-        same = next((j for j in alike if not lines_differ(lines[k], lines[j])), None)
+        near = [j for j in alike if not lines_differ(lines[k], lines[j])]
+        miles = route.distance_nm  # of several, the way is that of nearest length
+        same = min(near, key=lambda j: abs(chosen[j].distance_nm - miles), default=None)
         if same is not None:
-            speeds = [chosen[j].distance_nm / chosen[j].time_h for j in (k, same)]
-            how = "slower" if speeds[0] < (1.0 - SLOWER) * speeds[1] else "with more miles"
+            other = chosen[same]
+            speeds = [one.distance_nm / one.time_h for one in (route, other)]
+            slower = speeds[0] < (1.0 - SLOWER) * speeds[1]
+            how = "slower" if slower else "with more miles"
+            if slower and abs(miles / other.distance_nm - 1.0) > _SAME_LENGTH:
+                how = f"slower and {miles - other.distance_nm:+.0f} nm"
             difference = f"the way of route {same + 1}, {how}: {difference}"
         dues = sum(canal.fee for canal in used[k])
         found.append(RouteChoice(name, route, words, difference, passes[k], canals[k], dues))
