@@ -262,5 +262,7 @@ def test_ordered_speeds_of_routes_end_at_100_knots():
     data = {"name": "x", "speeds_kn": [10, 17], "hull": hull, "fuel": fuel}
     ship = Ship.from_dict(data | {"engine": {"reference_speed_kn": 17.0}})
     assert ship.with_speeds([60.0 * KNOT]).speeds[0] == pytest.approx(60.0 * KNOT)
-    with pytest.raises(InputError, match="from 0 to 100 kn"):
+    with pytest.raises(
+        InputError, match="above 0 and at most 100 kn; the ship file gives 10 to 17 kn"
+    ):
         ship.with_speeds([200.0 * KNOT])

@@ -132,6 +132,9 @@ def test_the_table_agrees_with_the_ship_and_states_its_error():
     known = np.isfinite(found)
     error = np.abs(found - truth)[known] / ship.speeds[0]
     assert np.quantile(error, 0.99) < 0.005
+    opened = table.before_closing().lookup(c)  # for bounds: of all weather
+    assert np.quantile(np.abs(opened - truth) / ship.speeds[0], 0.99) < 0.005
+    assert np.array_equal(table.at_setting(0).before_closing().lookup(c), opened)
     assert known[truth > 0.7 * ship.speeds[0]].mean() > 0.98
     assert not known[(truth < 0.5 * ship.speeds[0]) & (c["wind_speed"] > 13.0)].any()
 

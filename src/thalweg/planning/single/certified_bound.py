@@ -341,7 +341,7 @@ def _passage(context: PlanningContext, route: Route) -> StretchToBound:
     elif context.sea_is_calm:  # the table has following wind and seas, too
         top = float(context.ship.speeds[context.setting])
     ship = ShipInBarrier(
-        context.table.kernel_arrays(),
+        context.table.before_closing().kernel_arrays(),
         context.setting,
         context.needs.limits.array,
         top,

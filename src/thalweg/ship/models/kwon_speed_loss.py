@@ -181,4 +181,5 @@ def _without_unpredicted(
     here = Conditions(columns, load_factor=load_factor)
     speed = np.asarray(part.values, float)
     share = predicted_share(model, here, np.arange(speed.shape[-1]), speed)
-    return replace(part, values=np.where(share < _SHARE_IN_TABLES, np.nan, part.values))
+    closed = np.where(share < _SHARE_IN_TABLES, np.nan, part.values)
+    return replace(part, values=closed, before_closing=part.values)

@@ -143,8 +143,20 @@ class PerformanceTable:
         finish = None if self.finish is None else self.finish.at(chosen)
         parts = self.parts
         if finish is None or not finish.falls:
-            parts = tuple(replace(part, values=part.values[..., chosen]) for part in parts)
+            parts = tuple(part.at_settings(chosen) for part in parts)
         return replace(self, parts=parts, settings=self.settings[chosen], finish=finish)
+
+    def before_closing(self) -> PerformanceTable:
+        """Return the table for bounds: with the values of entries that searches find closed."""
+        if all(part.before_closing is None for part in self.parts):
+            return self
+        parts = tuple(
+            part
+            if part.before_closing is None
+            else replace(part, values=part.before_closing, before_closing=None)
+            for part in self.parts
+        )
+        return replace(self, parts=parts)
 
     def kernel_arrays(self) -> TableArrays:
         """Return the arrays that kernels look up (see `thalweg.kernels.leg.table_lookup`).

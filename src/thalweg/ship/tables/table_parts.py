@@ -51,6 +51,9 @@ class TablePart:
         Before a crossing the last axis runs over its columns instead.
     squared_height_limit : float, optional
         The part is multiplied by the square of the wave height, up to this height [m].
+    before_closing : float32 ndarray, optional
+        The values of the model where those of the part are NaN because the ship keeps out of such
+        conditions: what she makes there is known to bounds. Of the shape of ``values``.
 
     Raises
     ------
@@ -62,6 +65,7 @@ class TablePart:
     grids: tuple[FloatArray, ...]
     values: NDArray[np.float32]
     squared_height_limit: float = math.nan
+    before_closing: NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
         grids = tuple(np.ascontiguousarray(grid, float) for grid in self.grids)
@@ -69,6 +73,15 @@ class TablePart:
         object.__setattr__(self, "grids", grids)
         object.__setattr__(self, "values", values)
         self._check()
+
+    def at_settings(self, chosen: slice) -> TablePart:
+        """Return the part at some of its settings."""
+        before = self.before_closing
+        return replace(
+            self,
+            values=self.values[..., chosen],
+            before_closing=None if before is None else before[..., chosen],
+        )
 
     def _check(self) -> None:
         if len(self.axes) != len(self.grids) or len(set(self.axes)) != len(self.axes):

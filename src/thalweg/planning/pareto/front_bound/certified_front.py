@@ -202,8 +202,9 @@ def _is_fastest_setting(trade_off: TradeOffContext) -> bool:
         return False
     if not context.table.axes or context.sea_is_calm:
         return True
-    parts = [part.values[..., trade_off.settings] for part in context.table.parts]
-    highest = [part.values[..., context.setting, None] for part in context.table.parts]
+    table = context.table.before_closing()
+    parts = [part.values[..., trade_off.settings] for part in table.parts]
+    highest = [part.values[..., context.setting, None] for part in table.parts]
     rising = all(np.all((a <= b) | np.isnan(a)) for a, b in zip(parts, highest, strict=True))
     return context.table.finish is None and rising
 
@@ -300,7 +301,7 @@ def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]
     top = np.array([greatest_speed_of(context.ship, context.table, int(s)) for s in settings])
     priced = PricedShip(settings, table, least, top)
     ship = ShipInBarrier(
-        context.table.kernel_arrays(),
+        context.table.before_closing().kernel_arrays(),
         int(settings[np.argmax(top)]),
         context.needs.limits.array,
         float(top.max()),
