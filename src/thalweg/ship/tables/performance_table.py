@@ -147,7 +147,13 @@ class PerformanceTable:
         return replace(self, parts=parts, settings=self.settings[chosen], finish=finish)
 
     def before_closing(self) -> PerformanceTable:
-        """Return the table for bounds: with the values of entries that searches find closed."""
+        """Return the table for bounds: with the values of entries that searches find closed.
+
+        Returns
+        -------
+        PerformanceTable
+            This one where no entry is closed.
+        """
         if all(part.before_closing is None for part in self.parts):
             return self
         parts = tuple(

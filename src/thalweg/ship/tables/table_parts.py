@@ -75,7 +75,18 @@ class TablePart:
         self._check()
 
     def at_settings(self, chosen: slice) -> TablePart:
-        """Return the part at some of its settings."""
+        """Return the part at some of its settings.
+
+        Parameters
+        ----------
+        chosen : slice
+            Indices of the settings.
+
+        Returns
+        -------
+        TablePart
+            With these settings alone.
+        """
         before = self.before_closing
         return replace(
             self,
