@@ -22,7 +22,7 @@ from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
-    conditions_at,
+    conditions_in_state,
 )
 from thalweg.route.route import SPEED_NOT_PREDICTED, Violation
 from thalweg.route.track import Track
@@ -289,14 +289,10 @@ def unpredicted_speed_violations(
     model = world.ship.model
     if not (isinstance(model, SpeedLossModel) and isinstance(model.loss, KwonSpeedLoss)):
         return []
-    here = conditions_at(
-        world,
-        points,
-        time,
-        sampled=motion.sampled,
-        depth=motion.depth,
-        heading=motion.heading,
-    ).with_default(load_factor=world.ship.loading.load_factor)
+    if "wind_speed" not in world.ship.reads:
+        return []
+    here = conditions_in_state(world, points, time, motion)
+    here = here.with_default(load_factor=world.ship.loading.load_factor)
     speed = motion.speed_through_water
     share = predicted_share(model, here, points.setting, speed)
     bad = (share < LEAST_SPEED_SHARE) & at_sea & np.isfinite(time)

@@ -29,7 +29,7 @@ from thalweg.route.referee.sailing import SailedTrack, sailing_state_along
 from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
-    conditions_at,
+    conditions_in_state,
 )
 from thalweg.route.referee.surroundings import surroundings_columns
 from thalweg.route.referee.wait_samples import (
@@ -207,14 +207,7 @@ def _rates(
     motion: SailingState,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the brake power [W] and the fuel rate [kg/s] at points; NaN where not known."""
-    here = conditions_at(
-        world,
-        points,
-        time,
-        sampled=motion.sampled,
-        depth=motion.depth,
-        heading=motion.heading,
-    )
+    here = conditions_in_state(world, points, time, motion)
     found = world.ship.power_and_fuel(here, points.setting)
     power, fuel = (np.array(np.broadcast_to(rate, len(points)), float) for rate in found)
     if pieces.canals.any:

@@ -225,6 +225,20 @@ def conditions_at(
     )
 
 
+def conditions_in_state(
+    world: SailingEnvironment, points: TrackPoints, time: FloatArray, state: SailingState
+) -> Conditions:
+    """Return the conditions a ship model reads where the state of sailing is known."""
+    return conditions_at(
+        world,
+        points,
+        time,
+        sampled=state.sampled,
+        depth=state.depth,
+        heading=state.heading,
+    )
+
+
 def _solve_current_triangle(
     world: SailingEnvironment,
     points: TrackPoints,
