@@ -289,8 +289,6 @@ def unpredicted_speed_violations(
     model = world.ship.model
     if not (isinstance(model, SpeedLossModel) and isinstance(model.loss, KwonSpeedLoss)):
         return []
-    if "wind_speed" not in world.ship.reads:
-        return []
     here = conditions_in_state(world, points, time, motion)
     here = here.with_default(load_factor=world.ship.loading.load_factor)
     speed = motion.speed_through_water
