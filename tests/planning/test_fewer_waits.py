@@ -11,7 +11,9 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR
 from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.waiting_report import PASSES_TIME
-from thalweg.planning.single.fewer_waits import LatePaths, with_fewer_waits
+from thalweg.planning.single.fewer_waits import with_fewer_waits
+from thalweg.planning.single.late_paths import LatePaths
+from thalweg.planning.single.waits_above_limits import without_waits_above_limits
 
 GOAL, DIRECT_NM, LIMIT = 3.24, 194.8, 4.0
 MINUTE_H = 1.0 / 60.0
@@ -135,7 +137,7 @@ def sailed_with(context, wait_h):
     return route
 
 
-NO_PATHS = LatePaths(None, None, np.inf, None)
+NO_PATHS = LatePaths(None, None, np.inf, None, None)
 
 
 def test_waits_are_joined_as_far_as_the_limits_allow():
@@ -177,3 +179,71 @@ def test_one_wait_under_way_is_moved_to_the_berth():
     found = with_fewer_waits(context, route, NO_PATHS, last_departure=0.0)
     assert np.asarray(found.track.wait).tolist() == [5.1 * HOUR, 0.0, 0.0, 0.0, 0.0]
     assert found.arrive == pytest.approx(route.arrive)
+
+
+LON = 0.2 * np.arange(9)  # 1.2 h between two of them at 10 kn
+
+
+def blows(hour, lon):
+    """It blows at 0.6E from hour 4.5 to 6.4, and behind it until hour 8."""
+    at_wait = (np.abs(lon - 0.6) < 0.05) & (hour > 4.5) & (hour < 6.4)
+    return at_wait | ((np.abs(lon - 0.9) < 0.05) & (hour < 8.0))
+
+
+def route_of(context, wait_h):
+    wait = np.zeros(len(LON))
+    wait[: len(wait_h)] = HOUR * np.asarray(wait_h, float)
+    return context.evaluate(Track(0.0 * LON, LON, depart=0.0, wait=wait))
+
+
+@pytest.fixture
+def context():
+    made = context_in_wind(blows)
+    made.voyage.objective = "time"
+    return made
+
+
+def paths_with(early, *routes):
+    """Return late paths that are found as these routes, without waits."""
+    return SimpleNamespace(
+        arrive=early.arrive,
+        search_without_waits=lambda by: [one for one in routes if one.arrive <= by],
+        search=lambda by: None,
+        sail=lambda one: one,
+        refine=lambda one: one,
+    )
+
+
+def test_a_ship_arrives_later_where_she_would_wait_in_wind_above_her_limit(context):
+    early = route_of(context, [0.0, 0.0, 0.0, 3.0])
+    assert early.feasible
+    late = context.evaluate(early.track.replaced(depart=3.3 * HOUR, wait=0.0 * LON))
+    assert late.feasible and late.arrive > early.arrive
+    found, notes = without_waits_above_limits(
+        context, early, paths_with(early, late), last_departure=0.0
+    )
+    assert found.feasible and found.depart == 0.0
+    assert np.flatnonzero(found.track.wait).tolist() == [0]
+    assert early.arrive < found.arrive <= late.arrive
+    (note,) = notes
+    assert note.startswith("Arrives ") and "later than is possible" in note
+    assert "wait at sea 3.0 h at 0.0000N 0.6000E in wind of up to 58.3 kn" in note
+
+
+def test_a_route_stays_where_no_other_one_arrives_in_time(context):
+    early = route_of(context, [0.0, 0.0, 0.0, 3.0])
+    late = context.evaluate(early.track.replaced(depart=9.0 * HOUR, wait=0.0 * LON))
+    assert without_waits_above_limits(context, early, paths_with(early), last_departure=0.0) == (
+        early,
+        [],
+    )
+    assert (
+        without_waits_above_limits(context, early, paths_with(early, late), last_departure=0.0)[1]
+        == []
+    )
+    context.voyage.objective = "distance"
+    near = context.evaluate(early.track.replaced(depart=3.3 * HOUR, wait=0.0 * LON))
+    assert (
+        without_waits_above_limits(context, early, paths_with(early, near), last_departure=0.0)[1]
+        == []
+    )

@@ -1,14 +1,21 @@
 """Least fuel and cost of ships that wait: the limits open between the times of the network."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Track, Voyage, plan
+from thalweg.core.objective import FUEL_MASS
+from thalweg.core.time import parse_time
+from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
+from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
 from thalweg.planning.pareto.waiting.waits_of_fronts import (
     with_fewer_waits_of_front,
     with_waits_long_enough,
 )
+from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.voyage_context import voyage_context
 
@@ -213,3 +220,54 @@ def test_many_waits_become_one_at_the_start(tug, bar, at_lowest_speed):
     assert found.feasible
     assert np.flatnonzero(found.track.wait).tolist() == [0]
     assert found.time_h <= many.time_h
+
+
+def trade_off_of(context):
+    return SimpleNamespace(
+        context=context,
+        consumption=context.ship.tabulate_fuel(),
+        limits=context.needs.limits,
+        objective=SimpleNamespace(prices=FUEL_MASS),
+    )
+
+
+def test_the_screen_refuses_waits_that_end_before_the_bar_opens(tug, bar, at_lowest_speed):
+    context = context_of(tug, bar)
+    screen = WaitScreen(evaluator_around_routes(trade_off_of(context), [at_lowest_speed]))
+    track = at_lowest_speed.track
+    waits = np.outer([0.1, 0.5, 1.0, 1.05], track.wait)
+    found = screen.screened(track, waits)
+    assert found.may_keep.tolist() == [False, False, True, True]
+    assert found.arrive[2, len(track) - 1] == pytest.approx(at_lowest_speed.arrive, abs=60.0)
+    under_way = 1000.0 * at_lowest_speed.fuel_t - at_lowest_speed.legs["waiting_fuel"].sum()
+    assert found.cost[2] == pytest.approx(under_way, rel=0.01)  # waits have no price here
+
+
+def test_a_route_of_a_front_waits_at_the_berth_where_it_would_in_waves_above_the_limit():
+    """Waves of 3 m are at 0.6E from hour 4.5 to 6.4, and behind it until hour 8."""
+
+    def height(time, lat, lon):
+        hour = (time - parse_time(DEPART)) / 3600.0
+        at_wait = (np.abs(lon - 0.6) < 0.05) & (hour > 4.5) & (hour < 6.4)
+        behind = (np.abs(lon - 0.9) < 0.05) & (hour < 8.0)
+        return np.where(at_wait | behind, 3.0, 0.5) + 0.0 * lat
+
+    sea = Sea.from_functions({"sea_surface_wave_significant_height": height})
+    ship = Ship.simple(speed_kn=10.0, draught_m=5.0, fuel_t_per_day=12.0, max_wave_height_m=2.0)
+    chart = Chart.open_water(-0.5, 0.5, -0.5, 2.0)
+    voyage = Voyage(start=(0.0, 0.0), goal=(0.0, 1.6), depart=DEPART)
+    context = voyage_context(voyage, ship, sea, chart, NetworkChoice("auto", None, None))[0]
+    lon = 0.2 * np.arange(9)
+    wait = np.where(np.arange(9) == 3, 3.0 * 3600.0, 0.0)
+    at_sea = context.evaluate(Track(0.0 * lon, lon, DEPART, wait, np.zeros(8, int)))
+    assert at_sea.feasible and waiting_weather_warnings(at_sea, ship)
+    screen = WaitScreen(evaluator_around_routes(trade_off_of(context), [at_sea]))
+
+    def fuel(route):
+        return route.fuel_t
+
+    found = with_fewer_waits_of_front(at_sea, context.evaluate, fuel, context, screen)
+    assert found.feasible and not waiting_weather_warnings(found, ship)
+    assert found.time_h <= 1.1 * at_sea.time_h
+    assert found.fuel_t <= 1.1 * at_sea.fuel_t
+    assert np.asarray(found.track.wait)[0] > 0.0

@@ -25,6 +25,7 @@ from thalweg.route import (
 from thalweg.route.formats.file_route import file_route
 from thalweg.route.formats.waypoint_names import waypoint_names
 from thalweg.sea import Sea
+from thalweg.ship import Ship
 
 WRITERS = {"csv": write_csv, "geojson": write_geojson, "gpx": write_gpx, "rtz": write_rtz}
 DEPART = "2026-03-01T06:00:00Z"
@@ -264,3 +265,16 @@ def test_a_bend_along_the_edge_of_the_offing_is_no_string_of_short_legs():
     assert (
         not chart.with_offing(1.94 * NAUTICAL_MILE).legs_blocked(y[:-1], x[:-1], y[1:], x[1:]).any()
     )
+
+
+@pytest.mark.parametrize(("height", "kept"), [(4.002, True), (4.02, False)])
+def test_a_limit_is_kept_in_a_file_that_exceeds_it_by_its_rounding(tmp_path, height, kept):
+    """The file of a plan at its limit of waves rounds times and positions."""
+    ship = Ship.simple(speed_kn=10.0, draught_m=5.0, max_wave_height_m=4.0)
+    name = "sea_surface_wave_significant_height"
+    sea = Sea.from_functions({name: lambda time, lat, lon: height + 0.0 * (time + lat + lon)})
+    track = Track([0.0, 0.0], [0.0, 0.5], depart="2026-01-01T00:00Z")
+    path = tmp_path / "route.csv"
+    write_csv(evaluate(track, ship=ship, sea=sea, strict=False), path)
+    assert evaluate(path, ship=ship, sea=sea).feasible is kept
+    assert not evaluate(track, ship=ship, sea=sea).feasible

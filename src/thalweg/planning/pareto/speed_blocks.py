@@ -12,6 +12,7 @@ from thalweg.core.units import HOUR
 from thalweg.planning.pareto.cheapest_blocks import cheapest_blocks, cheapest_shift
 from thalweg.planning.pareto.front_points import essential_nodes
 from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TradeOffContext
+from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
 from thalweg.planning.pareto.waiting.waits_of_fronts import with_waits_long_enough
 from thalweg.route import Route, Track
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
@@ -47,8 +48,8 @@ def in_speed_blocks(
     from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
 
     around = evaluator_around_routes(trade_off, [item.route for item in scored])
-    evaluator = CostEvaluator(around, 0.0)
-    found = [_blocked(trade_off, item, block_duration, evaluator) for item in scored]
+    evaluator, screen = CostEvaluator(around, 0.0), WaitScreen(around)
+    found = [_blocked(trade_off, item, block_duration, evaluator, screen) for item in scored]
     _note_costs(trade_off, scored, [ways[0] for ways in found])
     return [one for ways in found for one in ways]
 
@@ -95,6 +96,7 @@ def _blocked(
     item: RefereedCandidate,
     block_duration: float,
     evaluator: CostEvaluator,
+    screen: WaitScreen,
 ) -> list[RefereedCandidate]:
     """Return a route in blocks, in several ways where these are clearly later or dearer.
 
@@ -121,7 +123,7 @@ def _blocked(
         if track is None:
             continue
         as_timed = score(track)
-        tried = with_waits_long_enough(context, as_timed, score)
+        tried = with_waits_long_enough(context, as_timed, score, screen)
         in_time = tried.arrive <= context.latest_arrival + 1.0
         value = trade_off.objective.value(tried)
         if tried.feasible and in_time and np.isfinite(value):

@@ -25,6 +25,7 @@ from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
     find_route_alternatives,
 )
+from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
 from thalweg.planning.pareto.exploration import explore_alternative, without_unknown_water
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
@@ -41,6 +42,8 @@ from thalweg.planning.pareto.trade_off_context import (
 from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
 from thalweg.planning.pareto.waiting.one_wait_candidates import one_wait_candidates
 from thalweg.planning.pareto.waiting.two_speeds_after_wait import two_speeds_after_wait
+from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
+from thalweg.planning.pareto.waiting.waits_in_shelter import WORTH_OF_SHELTER
 from thalweg.planning.pareto.waiting.waits_of_fronts import (
     with_fewer_waits_of_front,
     with_waits_long_enough,
@@ -48,6 +51,7 @@ from thalweg.planning.pareto.waiting.waits_of_fronts import (
 from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.single.weather_gaps import MAX_GAPS, data_gaps_on_route
@@ -292,15 +296,28 @@ def _ordered(
     others = [one for one in scored if one.candidate.stage != "one wait"]
     blocked = in_speed_blocks(trade_off, non_dominated_candidates(others)) if others else []
     found = non_dominated_candidates([*blocked, *steady])
-    return non_dominated_candidates([_with_fewer_waits(trade_off, one) for one in found])
+    if not any(np.any(one.route.track.wait[1:]) for one in found):
+        return found
+    screen = WaitScreen(evaluator_around_routes(trade_off, [one.route for one in found]))
+    return non_dominated_candidates([_with_fewer_waits(trade_off, one, screen) for one in found])
 
 
-def _with_fewer_waits(trade_off: TradeOffContext, item: RefereedCandidate) -> RefereedCandidate:
+def _with_fewer_waits(
+    trade_off: TradeOffContext, item: RefereedCandidate, screen: WaitScreen
+) -> RefereedCandidate:
+    """Return a route with few waits; one in weather above the limits makes it a worse one."""
     context, objective = trade_off.context, trade_off.objective
     route = with_fewer_waits_of_front(
-        item.route, lambda track: context.evaluate(track, objective.terms), objective.value, context
+        item.route,
+        lambda track: context.evaluate(track, objective.terms),
+        objective.value,
+        context,
+        screen,
     )
-    return item if route is item.route else replace(item, route=route, value=objective.value(route))
+    penalty = item.penalty
+    if waiting_weather_warnings(route, context.ship):
+        penalty += WORTH_OF_SHELTER
+    return replace(item, route=route, value=objective.value(route), penalty=penalty)
 
 
 def _from_coarse_to_fine(count: int) -> list[int]:

@@ -28,6 +28,14 @@ def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
 
     The first waypoint is left out: there the ship is at her berth.
     """
+    return [f"{WAITS} {text}: {_ADVICE}" for text in waiting_weather_texts(route, ship)]
+
+
+def waiting_weather_texts(route: Route, ship: Ship) -> list[str]:
+    """Return how long, where and in which weather a ship waits at sea above her limits.
+
+    Waits in unknown weather are part of them.
+    """
     met = route.wait_samples
     known = [
         ("waves", met.get(WAVE_HEIGHT), ship.limits.wave_height, 1.0, "m"),
@@ -35,7 +43,7 @@ def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
     ]
     notes = []
     for place, hours, lying in _waits(route):
-        where = f"{WAITS} {hours:.1f} h at {format_position(*place)}"
+        where = f"{hours:.1f} h at {format_position(*place)}"
         for name, values, limit, unit, symbol in known:
             if values is None or not np.isfinite(limit):
                 continue
@@ -45,12 +53,12 @@ def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
                 most = float(np.nanmax(here)) / unit
                 notes.append(
                     f"{where} in {name} of up to {most:.1f} {symbol}, above the limit of "
-                    f"{limit / unit:.1f} {symbol}: {_ADVICE}"
+                    f"{limit / unit:.1f} {symbol}"
                 )
             elif unknown.any():
                 notes.append(
                     f"{where}, where the data have no {name} for "
-                    f"{float(np.mean(unknown)) * hours:.1f} h of it: {_ADVICE}"
+                    f"{float(np.mean(unknown)) * hours:.1f} h of it"
                 )
     return notes
 

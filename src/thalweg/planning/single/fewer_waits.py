@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
@@ -18,12 +16,11 @@ from thalweg.planning.report.waiting_report import (
     PASSES_TIME,
     waiting_weather_warnings,
 )
+from thalweg.planning.single.late_paths import LatePaths, after_wait_at_berth
 from thalweg.planning.single.sheltered_waits import routes_with_one_wait, with_sheltered_waits
+from thalweg.planning.single.waits_above_limits import without_waits_above_limits
 from thalweg.route import Route
 from thalweg.route.refinement.better_route import comparison_key, shorten_waits
-from thalweg.search import SearchResult, ShipOnNetwork
-from thalweg.search.earliest_arrival import ArrivalQuery
-from thalweg.search.latest_departure import latest_departure
 
 #: By how much a route with fewer waits may arrive later: a minute [s], or this share of the voyage.
 _LATER, _LATER_SHARE = 60.0, 1e-3
@@ -34,31 +31,9 @@ _MOST_JOINED = 64  # waits that are joined with others one by one
 _MUCH_LONGER = 1.2  # times as long under way: a ship that may not wait passes the time
 
 
-@dataclass(frozen=True)
-class LatePaths:
-    """Paths of late departures on the network of a stretch.
-
-    Attributes
-    ----------
-    ship : On the network, within the limits of the search.
-    query : With the earliest departure.
-    arrive : Earliest arrival on the network [s since 1970-01-01T00:00Z].
-    refine : Refines the path of a search; returns its route as evaluated.
-    """
-
-    ship: ShipOnNetwork
-    query: ArrivalQuery
-    arrive: float
-    refine: Callable[[SearchResult], Route]
-
-    def search(self, arrive_by: float, no_later: float = math.inf) -> SearchResult | None:
-        """Return the path of the latest departure that arrives by a time, as `latest_departure`."""
-        return latest_departure(self.ship, self.query, arrive_by, no_later)
-
-
 def with_best_waits(
     context: PlanningContext, route: Route, paths: LatePaths, *, last_departure: float
-) -> Route:
+) -> tuple[Route, list[str]]:
     """Return a route with as few waits as possible, in weather within the limits if there is some.
 
     Parameters
@@ -69,11 +44,19 @@ def with_best_waits(
 
     Returns
     -------
-    Route : It arrives at most a minute later.
+    route : It arrives at most a minute later, or up to a tenth of the voyage where the ship would
+        wait at sea in weather above her limits.
+    notes : What such a wait takes.
     """
     latest = latest_allowed(context, route, share=math.inf)
-    fewer = with_fewer_waits(context, route, paths, last_departure=last_departure)
-    return with_sheltered_waits(context, fewer, latest)
+    best = with_sheltered_waits(context, route, latest)
+    sheltered, notes = without_waits_above_limits(
+        context, best, paths, last_departure=last_departure
+    )
+    if sheltered is not best:
+        return sheltered, notes
+    fewer = with_fewer_waits(context, best, paths, last_departure=last_departure)
+    return with_sheltered_waits(context, fewer, latest), []
 
 
 def latest_allowed(context: PlanningContext, route: Route, *, share: float = _LATER_SHARE) -> float:
@@ -123,12 +106,7 @@ def with_fewer_waits(
         under_way = found.duration - found.waiting
         if _count(best) == 1 and under_way > (1.0 - _WORTH) * _under_way(best):
             break
-        late = paths.refine(found)
-        track = late.track
-        depart = min(max(route.depart, last_departure), track.depart)
-        wait = np.array(track.wait, float)
-        wait[0] += track.depart - depart
-        tried = context.evaluate(track.replaced(depart=depart, wait=wait))
+        tried = after_wait_at_berth(context, paths.refine(found), route, last_departure)
         if tried.feasible:
             tried = _with_joined_waits(context, tried, latest)
         if tried.feasible and tried.arrive > route.arrive + _ROUNDING:

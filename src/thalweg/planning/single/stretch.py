@@ -27,11 +27,8 @@ from thalweg.planning.single.exceeded_limits import (
     exceeded_limits_on_route,
     without_exceeding_edges,
 )
-from thalweg.planning.single.fewer_waits import (
-    LatePaths,
-    passing_time_notes,
-    with_best_waits,
-)
+from thalweg.planning.single.fewer_waits import passing_time_notes, with_best_waits
+from thalweg.planning.single.late_paths import LatePaths
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import (
     departing_later,
@@ -200,10 +197,10 @@ def _search_and_refine(
     paths = _late_paths(context, network, frozen, limits, (result, route))
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
-    route = with_best_waits(context, route, paths, last_departure=window[1])
+    route, later = with_best_waits(context, route, paths, last_departure=window[1])
     notes = network.meta.notes if network.meta.kind == "layered" else ()
     exceeded = (f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
-    notes = (*notes, *exceeded, *passing)
+    notes = (*notes, *exceeded, *passing, *later)
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     # a limit opens after a wait; against currents the times without waits show as much
     waits = bool(np.any(route.track.wait)) or bool(set(result.refused) - {REASONS[CURRENT]})
@@ -236,7 +233,10 @@ def _late_paths(
     def refine(late: SearchResult) -> Route:
         return refine_track(context, track_from_result(network, late, context.setting), limits)
 
-    return LatePaths(ship, query, result.arrive, refine)
+    def sail(late: SearchResult) -> Route:
+        return context.evaluate(track_from_result(network, late, context.setting))
+
+    return LatePaths(ship, query, result.arrive, refine, sail)
 
 
 def isochrones(

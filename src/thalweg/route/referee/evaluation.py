@@ -20,6 +20,7 @@ from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.kernels import codes
 from thalweg.route.referee.adaptive_sailing import sail_to_tolerance
 from thalweg.route.referee.leg_segments import cut_into_pieces
 from thalweg.route.referee.limit_checks import coverage_error, is_data_gap
@@ -43,6 +44,10 @@ MIN_PIECES = 8  #: of every leg
 MAX_STEP = 0.5 * NAUTICAL_MILE  #: [m]
 MAX_PIECES = 2000  #: of a route at the coarser of its two step sizes (`MIN_PIECES` come first)
 _SPEED_TOLERANCE = 1e-6  # relative, for speeds that went through a file
+#: What rounding in a file changes: waves and wind as a share of the limit, the clearance [m].
+_WEATHER_ROUNDING, _CLEARANCE_ROUNDING = 1e-3, 5e-3
+_WEATHER = {codes.REASONS[codes.WAVE_HEIGHT], codes.REASONS[codes.WIND_SPEED]}
+_CLEARANCE = codes.REASONS[codes.DEPTH]
 _FILE_ROUNDING = 1e-4  # relative, by which files may round a speed above the greatest of the ship
 
 
@@ -123,6 +128,9 @@ def evaluate(
     is at its berth. If the sea has no current variables, still water is assumed, and the route
     states this.
 
+    Positions, times and speeds of a file are rounded: waves and wind up to 0.1 % above a limit and
+    a clearance up to 5 mm below the required one are no violations of a route from a file.
+
     A leg that orders a speed above the greatest of the ship (that of its largest power, or the
     highest of a ship file that knows no power above it) is sailed at the greatest; this is a
     violation.
@@ -153,7 +161,8 @@ def evaluate(
 
         notes = stated_time_notes(route_file_contents(Path(route)), result)
         notes += [] if chart is None else cross_track_notes(route, chart)
-        result = replace(result, assumptions=(*result.assumptions, *notes))
+        kept = tuple(v for v in result.violations if not _is_rounding_of_file(v))
+        result = replace(result, assumptions=(*result.assumptions, *notes), violations=kept)
     if strict and not math.isfinite(result.arrive):
         gaps = [violation for violation in result.violations if is_data_gap(violation)]
         if gaps:
@@ -229,6 +238,14 @@ def _with_too_fast_legs(route: Route, wanted: FloatArray) -> Route:
             )
         )
     return replace(route, violations=(*found, *route.violations)) if found else route
+
+
+def _is_rounding_of_file(violation: Violation) -> bool:
+    """Return whether a limit is exceeded by less than rounded positions and speeds change."""
+    exceeded = abs(violation.value - violation.limit)
+    if violation.reason in _WEATHER:
+        return exceeded <= _WEATHER_ROUNDING * violation.limit
+    return violation.reason.startswith(_CLEARANCE) and exceeded <= _CLEARANCE_ROUNDING
 
 
 def resolve_settings(ship: Ship, track: Track) -> tuple[Ship, Track]:

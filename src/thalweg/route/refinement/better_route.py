@@ -47,6 +47,7 @@ _ATTEMPTS = ((0, True), (1, True), (2, True), (3, True), (0, False), (2, False))
 _ATTEMPTS_WITHOUT_WAITING = 4  # those that differ for a ship that does not wait
 _WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
 _WAIT_TOLERANCE_SHARE = 1e-5
+_FIRST_SHORTER = 30.0  # by which a wait is shortened first [s]
 _WAIT_EXTENSIONS = (
     0.0,
     120.0,
@@ -243,20 +244,23 @@ def shorten_waits(route: Route, score: ScoreFunction) -> Route:
 
 
 def _shorten_wait(route: Route, index: int, score: ScoreFunction) -> Route:
-    """Bisect between a wait that is too short and one that is long enough."""
+    """Bisect between a wait that is too short and one that is long enough.
+
+    The given wait is nearly right as a rule: the first steps are short and grow.
+    """
     long_enough = float(route.track.wait[index])
     none = score(_with_wait(route.track, index, -long_enough))
     if none.feasible:
         return none if none.arrive <= route.arrive else route
-    best, track, too_short = route, route.track, 0.0
+    best, track, too_short, less = route, route.track, 0.0, _FIRST_SHORTER
     exact = min(_WAIT_TOLERANCE, _WAIT_TOLERANCE_SHARE * (route.arrive - route.depart))
     while long_enough - too_short > exact:
-        tried = 0.5 * (too_short + long_enough)
+        tried = max(0.5 * (too_short + long_enough), long_enough - less)
         shorter = score(_with_wait(track, index, tried - float(track.wait[index])))
         if shorter.feasible and shorter.arrive <= best.arrive:
-            best, long_enough = shorter, tried
+            best, long_enough, less = shorter, tried, 8.0 * less
         else:
-            too_short = tried
+            too_short, less = tried, math.inf
     return best
 
 

@@ -8,7 +8,10 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
+from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
+from thalweg.planning.pareto.waiting.waits_in_shelter import with_waits_in_shelter
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.planning.single.sheltered_waits import routes_with_one_wait
@@ -33,7 +36,10 @@ _LATER, _DEARER = 60.0, 1e-3
 
 
 def with_waits_long_enough(
-    context: PlanningContext, route: Route, score: Callable[[Track], Route]
+    context: PlanningContext,
+    route: Route,
+    score: Callable[[Track], Route],
+    screen: WaitScreen | None = None,
 ) -> Route:
     """Return a route that breaks a limit too early with a wait that is long enough, if one is.
 
@@ -43,6 +49,7 @@ def with_waits_long_enough(
     ----------
     route : As evaluated.
     score : Evaluates a track.
+    screen : Waits that it refuses are not evaluated.
 
     Returns
     -------
@@ -56,7 +63,7 @@ def with_waits_long_enough(
     if not {violation.reason.split(":")[0] for violation in route.violations} <= _OPENING:
         return route
     for wait, place in _places_of_waits(context, route):
-        found = _with_least_wait(context, route.track, wait, place, score)
+        found = _with_least_wait(context, route.track, wait, place, score, screen)
         if found is not None:
             return found
     return route
@@ -67,28 +74,39 @@ def with_fewer_waits_of_front(
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
     context: PlanningContext,
+    screen: WaitScreen | None = None,
 ) -> Route:
     """Return a route with its waits put together, where it arrives as early and costs no more.
+
+    Where the ship would wait in weather above her limits she waits elsewhere, if that is worth it
+    (`with_waits_in_shelter`).
 
     Parameters
     ----------
     route : As evaluated.
     score : Evaluates a track.
     value : Of a route, to be small.
+    screen : Waits that it refuses are not evaluated.
     """
     wait = np.asarray(route.track.wait)
     if not route.feasible or np.count_nonzero(wait[1:]) == 0:
         return route
-    if np.count_nonzero(wait) >= _MANY:
-        return _with_one_wait(route, score, value, context)
     ship, most = context.ship, value(route) * (1.0 + _DEARER)
-    latest = max(min(route.arrive + _LATER, context.latest_arrival), route.arrive)
-    met = len(waiting_weather_warnings(route, ship))
-    for tried in routes_with_one_wait(context, route, score):
-        if not tried.feasible or tried.arrive > latest or value(tried) > most:
-            continue
-        if len(waiting_weather_warnings(tried, ship)) <= met:
-            return tried
+    if np.count_nonzero(wait) >= _MANY:
+        route = _with_one_wait(route, score, value, context, screen)
+    else:
+        latest = max(min(route.arrive + _LATER, context.latest_arrival), route.arrive)
+        met = len(waiting_weather_warnings(route, ship))
+        for tried in routes_with_one_wait(
+            context, route, score, screen.may_keep if screen else None
+        ):
+            if not tried.feasible or tried.arrive > latest or value(tried) > most:
+                continue
+            if len(waiting_weather_warnings(tried, ship)) <= met:
+                route = tried
+                break
+    if screen is not None and waiting_weather_warnings(route, ship):
+        return with_waits_in_shelter(route, score, value, context, screen)
     return route
 
 
@@ -97,11 +115,12 @@ def _with_one_wait(
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
     context: PlanningContext,
+    screen: WaitScreen | None,
 ) -> Route:
     """Return a route with many waits with the least one at its start, if that is worth it."""
     together = np.zeros(len(route.track.wait))
     together[0] = total = float(np.sum(route.track.wait))
-    found = _with_least_wait(context, route.track, together, 0, score)
+    found = _with_least_wait(context, route.track, together, 0, score, screen)
     too_short = 0.0
     while found is not None and total - too_short > _LATER:
         together[0] = 0.5 * (too_short + total)
@@ -134,21 +153,27 @@ def _with_least_wait(
     wait: np.ndarray,
     place: int,
     score: Callable[[Track], Route],
+    screen: WaitScreen | None,
 ) -> Route | None:
     """Return the track with the wait at a waypoint changed least so that it keeps all limits."""
 
-    def tried(more: float) -> Route | None:
+    def changed(more: float) -> FloatArray:
         longer = np.array(wait)
         longer[place] += more
-        route = score(track.replaced(wait=longer))
+        return longer
+
+    def tried(more: float) -> Route | None:
+        route = score(track.replaced(wait=changed(more)))
         kept = route.feasible and route.arrive <= context.latest_arrival + 1.0
         return route if kept else None
 
+    changes = [more for more in _CHANGES if wait[place] + more >= 0.0]
+    may_keep = np.ones(len(changes), bool)
+    if screen is not None:
+        may_keep = screen.may_keep(track, np.array([changed(more) for more in changes]))
     too_short, kept = -math.inf, None
-    for more in _CHANGES:
-        if more < 0.0 and wait[place] + more < 0.0:
-            continue
-        kept = tried(more)
+    for more, may in zip(changes, may_keep, strict=True):
+        kept = tried(more) if may else None
         if kept is not None:
             break
         too_short = max(too_short, more)

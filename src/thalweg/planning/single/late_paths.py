@@ -1,0 +1,88 @@
+"""Paths of late departures on the network of a stretch, and their routes from the berth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.route import Route
+from thalweg.search import SearchResult, ShipOnNetwork
+from thalweg.search.earliest_arrival import ArrivalQuery, earliest_arrival
+from thalweg.search.latest_departure import latest_departure
+
+_DEPARTURE_STEP: Final = 3600.0  # between departures of paths without waits [s]
+_MOST_DEPARTURES: Final = 60
+_SAME_ARRIVAL: Final = 1800.0  # [s]
+
+
+@dataclass(frozen=True)
+class LatePaths:
+    """Paths of late departures on the network of a stretch.
+
+    Attributes
+    ----------
+    ship : On the network, within the limits of the search.
+    query : With the earliest departure.
+    arrive : Earliest arrival on the network [s since 1970-01-01T00:00Z].
+    refine : Refines the path of a search; returns its route as evaluated.
+    sail : Returns the route of the path of a search as evaluated, without refinement.
+    """
+
+    ship: ShipOnNetwork
+    query: ArrivalQuery
+    arrive: float
+    refine: Callable[[SearchResult], Route]
+    sail: Callable[[SearchResult], Route]
+
+    def search(self, arrive_by: float, no_later: float = math.inf) -> SearchResult | None:
+        """Return the path of the latest departure that arrives by a time, as `latest_departure`."""
+        return latest_departure(self.ship, self.query, arrive_by, no_later)
+
+    def search_without_waits(self, arrive_by: float) -> list[SearchResult]:
+        """Return the paths without waits of departures that arrive by a time [s since 1970].
+
+        The earliest arrival comes first, within half an hour the shortest time under way.
+        """
+        first, step = self.query.depart, _DEPARTURE_STEP
+        step = max(step, (arrive_by - first) / _MOST_DEPARTURES)
+        found = []
+        for depart in np.arange(first, arrive_by, step).tolist():
+            result = earliest_arrival(
+                self.ship,
+                start=self.query.start,
+                goal=self.query.goal,
+                depart=depart,
+                wait=False,
+                arrive_by=arrive_by,
+            )
+            if result.found and result.arrive <= arrive_by:
+                found.append(result)
+        earliest = min((result.arrive for result in found), default=0.0)
+
+        def key(result: SearchResult) -> tuple[int, float]:
+            return round((result.arrive - earliest) / _SAME_ARRIVAL), result.duration
+
+        return sorted(found, key=key)
+
+
+def after_wait_at_berth(
+    context: PlanningContext, late: Route, route: Route, last_departure: float
+) -> Route:
+    """Return a late route, evaluated with the wait at the berth since another one departs.
+
+    Parameters
+    ----------
+    late : Of a late departure.
+    route : The other one.
+    last_departure : The ship waits from then on, at the latest [s since 1970-01-01T00:00Z].
+    """
+    track = late.track
+    depart = min(max(route.depart, last_departure), track.depart)
+    wait = np.array(track.wait, float)
+    wait[0] += track.depart - depart
+    return context.evaluate(track.replaced(depart=depart, wait=wait))
