@@ -228,9 +228,12 @@ def _corridors(
     """Return boxes, pointers and segments of the corridors where less than a distance is needed."""
     rows, boxes, ptr = [np.zeros((0, 8))], [np.zeros((0, 4))], [0]
     for passage in passages:
-        if passage.half_width > _MARGIN * distance:
-            continue
-        found = _segments(coastline, distance, passage)
+        lines = [] if passage.half_width > _MARGIN * distance else [passage.line]
+        parts = [
+            _segments(coastline, distance, line, passage.half_width)
+            for line in (*lines, *passage.lanes)
+        ]
+        found = np.concatenate([np.zeros((0, 8)), *parts])
         if not len(found):
             continue
         rows.append(found)
@@ -245,10 +248,18 @@ def _corridors(
 
 
 @lru_cache(maxsize=1024)
-def _segments(coastline: Coastline, distance: float, passage: Passage) -> FloatArray:
-    """Return the segments of a passage whose line is nearer to land than a distance [m]."""
-    sample = float(np.clip(0.2 * passage.half_width, 0.2 * _SAMPLE, _SEGMENT))
-    lat, lon, _ = densify(*passage.positions, sample)
+def _segments(
+    coastline: Coastline, distance: float, line: tuple[Position, ...], half_width: float
+) -> FloatArray:
+    """Return the segments of a line that are nearer to land than a distance [m].
+
+    Parameters
+    ----------
+    half_width : Of the passage [m]; segments are sampled by it.
+    """
+    sample = float(np.clip(0.2 * half_width, 0.2 * _SAMPLE, _SEGMENT))
+    latitudes, longitudes = np.array(line, float).T
+    lat, lon, _ = densify(latitudes, longitudes, sample)
     shore = coastline.shore_distance(lat, lon, cap=1.2 * distance)
     many = max(round(_SEGMENT / sample), 1)
     first = np.arange(0, len(lat) - 1, many)

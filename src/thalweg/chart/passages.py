@@ -56,6 +56,9 @@ class Passage:
         Bridges, services, restrictions.
     source : str
         Sources of the line and of the limits.
+    lanes : tuple of lines (lat, lon), optional
+        Middles of traffic lanes [deg] that are nearer to land than the centre line; along them the
+        offing is as small as along that.
     closing_line : tuple of (lat, lon), optional
         Line across from land to land [deg], where islands divide the passage; by default it is
         found at the narrowest place (`thalweg.chart.offing.closing_line`).
@@ -79,6 +82,7 @@ class Passage:
     note: str = ""
     source: str = ""
     closing_line: tuple[Position, ...] = ()
+    lanes: tuple[tuple[Position, ...], ...] = ()
 
     def __post_init__(self) -> None:
         if self.use not in USES or len(self.line) < 2:
@@ -219,10 +223,11 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
     def number(column: str, absent: float) -> float:
         return float(row[column]) if row[column] else absent
 
+    line, *lanes = (read_line(part) for part in row["line"].split("|"))
     return Passage(
         row["name"],
         row["use"],
-        read_line(row["line"]),
+        line,
         half_width=number("half_width_nm", math.nan) * NAUTICAL_MILE,
         controlling_depth=number("controlling_depth_m", math.nan),
         max_draught=number("max_draught_m", math.inf),
@@ -233,6 +238,7 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
         note=row["note"],
         source=row["source"],
         closing_line=read_line(row["closing_line"] or ""),
+        lanes=tuple(lanes),
     )
 
 

@@ -10,6 +10,8 @@ import math
 from dataclasses import replace
 from typing import Final
 
+import numpy as np
+
 from thalweg.core.geodesy import distance
 from thalweg.search.earliest_arrival import ArrivalQuery, earliest_arrival
 from thalweg.search.search_problem import ShipOnNetwork
@@ -17,6 +19,9 @@ from thalweg.search.search_result import SearchResult
 
 _MOST_SEARCHES: Final = 10
 _ACCURACY: Final = 60.0  # of the departure [s]
+_DEPARTURE_STEP: Final = 3600.0  # between departures of paths without waits [s]
+_MOST_DEPARTURES: Final = 60
+_SAME_ARRIVAL: Final = 1800.0  # [s]
 _ROUNDING: Final = 0.1  # of sums of times along a path [s]
 
 
@@ -73,6 +78,38 @@ def latest_departure(
         halved = found is not None or not too_late - back > in_time
         departure = 0.5 * (in_time + too_late) if halved else too_late - back
     return found
+
+
+def departures_without_waits(
+    ship_on_network: ShipOnNetwork, query: ArrivalQuery, arrive_by: float
+) -> list[SearchResult]:
+    """Find the paths of least time without waits, of departures an hour apart.
+
+    Parameters
+    ----------
+    ship_on_network, query : As of `latest_departure`.
+    arrive_by : float
+        Latest arrival [s since 1970-01-01T00:00Z].
+
+    Returns
+    -------
+    list of SearchResult
+        Those that arrive by the time, at most 60: the earliest arrival first, of arrivals within
+        half an hour the shortest time under way.
+    """
+    step = max(_DEPARTURE_STEP, (arrive_by - query.depart) / _MOST_DEPARTURES)
+    found = []
+    for depart in np.arange(query.depart, arrive_by, step).tolist():
+        one = replace(query, depart=depart, wait=False, arrive_by=arrive_by)
+        result = _search(ship_on_network, one)
+        if result.found and result.arrive <= arrive_by:
+            found.append(result)
+    earliest = min((result.arrive for result in found), default=0.0)
+
+    def key(result: SearchResult) -> tuple[int, float]:
+        return round((result.arrive - earliest) / _SAME_ARRIVAL), result.duration
+
+    return sorted(found, key=key)
 
 
 def _search(ship_on_network: ShipOnNetwork, query: ArrivalQuery) -> SearchResult:

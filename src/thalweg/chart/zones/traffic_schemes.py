@@ -120,14 +120,14 @@ class TrafficScheme:
     @cached_property
     def separation(self) -> Any:
         """The separation zone as a shapely polygon of longitude and latitude."""
-        return _quadrangle(*self._shifted(-self.zone), *self._shifted(self.zone)[::-1])
+        return _quadrangle(*self.shifted(-self.zone), *self.shifted(self.zone)[::-1])
 
     @cached_property
     def arrows(self) -> tuple[tuple[Position, Position], ...]:
         """For drawing: the middle of each lane along each part, from start to end (lat, lon)."""
         sides = (
-            self._shifted(self.zone + 0.5 * self.lane),
-            self._shifted(-self.zone - 0.5 * self.lane)[::-1],
+            self.shifted(self.zone + 0.5 * self.lane),
+            self.shifted(-self.zone - 0.5 * self.lane)[::-1],
         )
         return tuple(
             ((float(a[1]), float(a[0])), (float(b[1]), float(b[0])))
@@ -137,12 +137,23 @@ class TrafficScheme:
 
     def _part(self, k: int, inner: float, outer: float) -> Any:
         """Return the area between two distances [m] to starboard, along one part of the line."""
-        near, far = self._shifted(inner), self._shifted(outer)
+        near, far = self.shifted(inner), self.shifted(outer)
         shape = _quadrangle(near[k], near[k + 1], far[k + 1], far[k])
         return shape if shape.is_valid else shape.convex_hull  # where the line turns sharply
 
-    def _shifted(self, metres: float) -> FloatArray:
-        """Return the line (n, 2) as (lon, lat) [deg], so far to starboard."""
+    def shifted(self, metres: float) -> FloatArray:
+        """Return the separation line moved to starboard.
+
+        Parameters
+        ----------
+        metres : float
+            Distance [m]; negative to port.
+
+        Returns
+        -------
+        float64 array (n, 2)
+            Longitude and latitude [deg].
+        """
         lat, lon = np.array(self.line, float).T
         stretch = np.cos(np.radians(lat.mean()))
         xy = np.stack([lon * stretch, lat], axis=-1)

@@ -165,9 +165,28 @@ def _evaluator(
 
 def evaluator_around_routes(trade_off: TradeOffContext, routes: Sequence[Route]) -> Evaluator:
     """Return an evaluator of tracks near some routes that arrive little later than these."""
+    total = float(np.median([route.legs["length"].sum() for route in routes]))
+    arrive = max(route.arrive for route in routes)
+    return _evaluator_around(trade_off, [route.track for route in routes], arrive, total)
+
+
+def evaluator_around_candidates(
+    trade_off: TradeOffContext, candidates: Sequence[TrackCandidate]
+) -> Evaluator:
+    """Return an evaluator of tracks near some candidates that arrive little later than these."""
+    tracks = [item.track for item in candidates]
+    total = float(np.median([track.lengths.sum() for track in tracks]))
+    arrive = [item.track.depart + item.time for item in candidates if math.isfinite(item.time)]
+    latest = min(trade_off.context.latest_arrival, trade_off.context.data_end)
+    return _evaluator_around(trade_off, tracks, max(arrive, default=latest), total)
+
+
+def _evaluator_around(
+    trade_off: TradeOffContext, tracks: list[Track], arrive: float, total: float
+) -> Evaluator:
+    """Return an evaluator around tracks of a total length [m] that arrive by a time [s]."""
     context = trade_off.context
-    tracks = [route.track for route in routes]
-    depart, arrive = min(t.depart for t in tracks), max(route.arrive for route in routes)
+    depart = min(track.depart for track in tracks)
     until = min(arrive + _LATER * (arrive - depart) + HOUR, context.data_end)
     return make_evaluator(
         TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
@@ -175,9 +194,7 @@ def evaluator_around_routes(trade_off: TradeOffContext, routes: Sequence[Route])
         depart=depart,
         chart=context.chart,
         prices=trade_off.objective.prices,
-        resolution=EvaluationResolution(
-            total=float(np.median([route.legs["length"].sum() for route in routes]))
-        ),
+        resolution=EvaluationResolution(total=total),
     )
 
 

@@ -11,7 +11,11 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.cheapest_blocks import cheapest_blocks, cheapest_shift
 from thalweg.planning.pareto.front_points import essential_nodes
-from thalweg.planning.pareto.trade_off_context import RefereedCandidate, TradeOffContext
+from thalweg.planning.pareto.trade_off_context import (
+    RefereedCandidate,
+    TradeOffContext,
+    scored_candidate,
+)
 from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
 from thalweg.planning.pareto.waiting.waits_of_fronts import with_waits_long_enough
 from thalweg.route import Route, Track
@@ -128,7 +132,7 @@ def _blocked(
         value = trade_off.objective.value(tried)
         if tried.feasible and in_time and np.isfinite(value):
             worse = max(tried.time_h / route.time_h, value / max(item.value, 1e-12))
-            found.append((worse, replace(item, route=tried, value=value)))
+            found.append((worse, scored_candidate(trade_off, item.candidate, tried, value)))
             if worse < 1.0 + _CLEARLY_WORSE and tried is as_timed:
                 break
     return [one for _, one in sorted(found, key=lambda pair: pair[0])] or [item]

@@ -19,6 +19,7 @@ from thalweg.core.units import HOUR
 from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
 from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
+from thalweg.planning.report.waiting_report import waiting_weather_texts
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.planning.single.certified_bound import TABLE_MARGIN
@@ -54,6 +55,8 @@ class FrontDetail:
 WHOLE_FRONT = FrontDetail(36, 12, 140, 36, 60, 26, 40, 100)
 #: For the best route by one objective, with a few faster ones for comparison.
 BEST_ROUTE = FrontDetail(6, 3, 24, 4, 0, 0, 12, 12)
+#: Share of the value that a wait in weather within the limits is worth.
+WORTH_OF_SHELTER: Final = 0.5
 _DAY: Final = 24.0 * HOUR
 _ONE_BEST: Final = ("fuel", "energy", "cost", "co2")
 
@@ -245,7 +248,8 @@ class RefereedCandidate:
 
     Attributes
     ----------
-    penalty : What penalty zones, shoals and lanes add, as a share of the time.
+    penalty : What penalty zones, shoals and lanes add, as a share of the time, and what a wait in
+        weather within the limits is worth (`WORTH_OF_SHELTER`) where the ship waits above them.
     """
 
     candidate: TrackCandidate
@@ -258,8 +262,11 @@ def scored_candidate(
     trade_off: TradeOffContext, candidate: TrackCandidate, route: Route, value: float
 ) -> RefereedCandidate:
     """Return a candidate with its route, its value and what penalties add to it."""
-    penalty = penalty_excess(route, "time", trade_off.context.chart)
-    return RefereedCandidate(candidate, route, value, penalty / max(route.time_h * HOUR, 1.0))
+    context = trade_off.context
+    penalty = penalty_excess(route, "time", context.chart) / max(route.time_h * HOUR, 1.0)
+    if waiting_weather_texts(route, context.ship):
+        penalty += WORTH_OF_SHELTER
+    return RefereedCandidate(candidate, route, value, penalty)
 
 
 def non_dominated_candidates(scored: list[RefereedCandidate]) -> list[RefereedCandidate]:

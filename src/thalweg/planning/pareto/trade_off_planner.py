@@ -25,7 +25,10 @@ from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
     find_route_alternatives,
 )
-from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
+from thalweg.planning.pareto.evolutionary_refinement import (
+    evaluator_around_candidates,
+    evaluator_around_routes,
+)
 from thalweg.planning.pareto.exploration import explore_alternative, without_unknown_water
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.plan_assembly import assemble_trade_off_plan
@@ -43,7 +46,6 @@ from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
 from thalweg.planning.pareto.waiting.one_wait_candidates import one_wait_candidates
 from thalweg.planning.pareto.waiting.two_speeds_after_wait import two_speeds_after_wait
 from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
-from thalweg.planning.pareto.waiting.waits_in_shelter import WORTH_OF_SHELTER
 from thalweg.planning.pareto.waiting.waits_of_fronts import (
     with_fewer_waits_of_front,
     with_waits_long_enough,
@@ -51,9 +53,9 @@ from thalweg.planning.pareto.waiting.waits_of_fronts import (
 from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
+from thalweg.planning.single.lane_keeping import in_lanes_of_traffic
 from thalweg.planning.single.weather_gaps import MAX_GAPS, data_gaps_on_route
 from thalweg.route.route import Violation
 from thalweg.ship.consumption import consumption_table
@@ -255,17 +257,24 @@ def _refereed(
     context = trade_off.context
     context.report_progress(f"evaluating {len(candidates)} routes")
     by_index: dict[int, RefereedCandidate] = {}
-    until = math.inf
+    until, screen = math.inf, None
+    held = [(end.lat, end.lon) for end in trade_off.via]
     for k in _from_coarse_to_fine(len(candidates)):
         if trade_off.interrupt_guard.stopped():
             until = min(until, monotonic() + _SECONDS_INTERRUPTED)
             if monotonic() > until and any(item.route.feasible for item in by_index.values()):
                 break
         candidate = candidates[k]
-        route = scored_with_fewer_turns(trade_off, candidate.track, candidate.time)
-        route = with_waits_long_enough(
-            context, route, lambda track: context.evaluate(track, trade_off.objective.terms)
-        )
+        track = in_lanes_of_traffic(candidate.track, context.chart, held)
+        route = scored_with_fewer_turns(trade_off, track, candidate.time)
+        if not route.feasible and context.voyage.wait:
+            screen = screen or WaitScreen(evaluator_around_candidates(trade_off, candidates))
+            route = with_waits_long_enough(
+                context,
+                route,
+                lambda track: context.evaluate(track, trade_off.objective.terms),
+                screen,
+            )
         by_index[k] = scored_candidate(
             trade_off, candidate, route, trade_off.objective.value(route)
         )
@@ -305,7 +314,6 @@ def _ordered(
 def _with_fewer_waits(
     trade_off: TradeOffContext, item: RefereedCandidate, screen: WaitScreen
 ) -> RefereedCandidate:
-    """Return a route with few waits; one in weather above the limits makes it a worse one."""
     context, objective = trade_off.context, trade_off.objective
     route = with_fewer_waits_of_front(
         item.route,
@@ -314,10 +322,7 @@ def _with_fewer_waits(
         context,
         screen,
     )
-    penalty = item.penalty
-    if waiting_weather_warnings(route, context.ship):
-        penalty += WORTH_OF_SHELTER
-    return replace(item, route=route, value=objective.value(route), penalty=penalty)
+    return scored_candidate(trade_off, item.candidate, route, objective.value(route))
 
 
 def _from_coarse_to_fine(count: int) -> list[int]:

@@ -5,19 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Route
 from thalweg.search import SearchResult, ShipOnNetwork
-from thalweg.search.earliest_arrival import ArrivalQuery, earliest_arrival
-from thalweg.search.latest_departure import latest_departure
-
-_DEPARTURE_STEP: Final = 3600.0  # between departures of paths without waits [s]
-_MOST_DEPARTURES: Final = 60
-_SAME_ARRIVAL: Final = 1800.0  # [s]
+from thalweg.search.earliest_arrival import ArrivalQuery
+from thalweg.search.latest_departure import departures_without_waits, latest_departure
 
 
 @dataclass(frozen=True)
@@ -48,26 +43,7 @@ class LatePaths:
 
         The earliest arrival comes first, within half an hour the shortest time under way.
         """
-        first, step = self.query.depart, _DEPARTURE_STEP
-        step = max(step, (arrive_by - first) / _MOST_DEPARTURES)
-        found = []
-        for depart in np.arange(first, arrive_by, step).tolist():
-            result = earliest_arrival(
-                self.ship,
-                start=self.query.start,
-                goal=self.query.goal,
-                depart=depart,
-                wait=False,
-                arrive_by=arrive_by,
-            )
-            if result.found and result.arrive <= arrive_by:
-                found.append(result)
-        earliest = min((result.arrive for result in found), default=0.0)
-
-        def key(result: SearchResult) -> tuple[int, float]:
-            return round((result.arrive - earliest) / _SAME_ARRIVAL), result.duration
-
-        return sorted(found, key=key)
+        return departures_without_waits(self.ship, self.query, arrive_by)
 
 
 def after_wait_at_berth(

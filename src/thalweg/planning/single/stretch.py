@@ -28,6 +28,7 @@ from thalweg.planning.single.exceeded_limits import (
     without_exceeding_edges,
 )
 from thalweg.planning.single.fewer_waits import passing_time_notes, with_best_waits
+from thalweg.planning.single.lane_keeping import by_lanes_of_traffic
 from thalweg.planning.single.late_paths import LatePaths
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import (
@@ -194,6 +195,7 @@ def _search_and_refine(
             route = through_narrow_features(context, route, limits)
             found = partial(_route_on_network, context, limits, window, ends)
             route = along_way_of_seas(context, ends, route, found, limits)
+            route = by_lanes_of_traffic(context, route)
     paths = _late_paths(context, network, frozen, limits, (result, route))
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []

@@ -25,7 +25,7 @@ from thalweg.planning.report.waiting_report import LEAST_WAIT_H
 from thalweg.planning.single.route_candidates import track_from_result
 from thalweg.route import Route, Track
 from thalweg.search.earliest_arrival import ArrivalQuery
-from thalweg.search.latest_departure import latest_departure
+from thalweg.search.latest_departure import departures_without_waits, latest_departure
 
 _MOST_SETTINGS: Final = 8
 _EDGES: Final = 60  # of a line
@@ -95,6 +95,9 @@ def _waiting_once(
     chosen = [found[0]]
     if shortest.duration - shortest.waiting < found[0].duration - found[0].waiting - _LATER:
         chosen.append(shortest)
+    if any(result.waiting > _LATER for result in chosen):  # at sea, perhaps above her limits
+        without = departures_without_waits(ship, query, last)
+        chosen += [*without[:1], *sorted(without[1:], key=lambda one: one.duration)[:1]]
     tracks = []
     for result in chosen:
         track = track_from_result(network, result, setting)

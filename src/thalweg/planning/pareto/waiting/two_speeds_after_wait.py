@@ -10,11 +10,13 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.planning.pareto.evolutionary_refinement import evaluator_around_routes
 from thalweg.planning.pareto.trade_off_context import (
     RefereedCandidate,
     TradeOffContext,
     scored_candidate,
 )
+from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
 from thalweg.planning.pareto.waiting.waits_of_fronts import with_waits_long_enough
 from thalweg.route import Route, Track
 
@@ -44,12 +46,15 @@ def two_speeds_after_wait(
     def score(track: Track) -> Route:
         return trade_off.context.evaluate(track, trade_off.objective.terms)
 
+    if not steady:
+        return []
+    screen = WaitScreen(evaluator_around_routes(trade_off, [one.route for one in steady]))
     found: list[RefereedCandidate] = []
     for lower, higher, shares in _neighbours(trade_off, steady):
         for track in _mixtures(lower.route.track, higher.route.track, shares):
             if trade_off.interrupt_guard.stopped():
                 return found
-            route = with_waits_long_enough(trade_off.context, score(track), score)
+            route = with_waits_long_enough(trade_off.context, score(track), score, screen)
             value = trade_off.objective.value(route)
             in_time = route.arrive <= trade_off.context.latest_arrival + 1.0
             if route.feasible and in_time and math.isfinite(value):

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR
+from thalweg.planning.pareto.trade_off_context import WORTH_OF_SHELTER
 from thalweg.planning.pareto.waiting.wait_screening import ScreenedWaits, WaitScreen
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.route import Route, Track
 from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
-#: Share of the time and of the value that a wait in weather within the limits is worth.
-WORTH_OF_SHELTER: Final = 0.1
+_MOST_LATER: Final = 0.1  # share of the time by which a route with other waits may arrive later
 _MOST_PLACES: Final = 16  # waypoints at which a wait is tried
 _AT_BERTH: Final = (1.0, 0.75, 0.5, 0.25, 0.0)  # shares of the wait that are spent at the berth
 #: By how much all waits together may be longer or shorter [h].
@@ -47,9 +47,9 @@ def with_waits_in_shelter(
     -------
     Route
         The same line and speeds with one wait at the berth and one at most under way. The given
-        route where that takes or costs over 10 % more, or no such waits keep the limits.
+        route where that takes over 10 % or costs over half more, or no such waits keep the limits.
     """
-    longest = (1.0 + WORTH_OF_SHELTER) * route.time_h * HOUR
+    longest = (1.0 + _MOST_LATER) * route.time_h * HOUR
     latest = min(route.depart + longest, context.latest_arrival + 1.0)
     most = (1.0 + WORTH_OF_SHELTER) * value(route)
     track, places = route.track, _places(context, route.track)
