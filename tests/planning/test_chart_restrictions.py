@@ -7,6 +7,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.chart.passages import find_passages
 from thalweg.core.errors import NoRouteError
 from thalweg.network import check_network, lattice, shortest_path
+from thalweg.network.global_grid.ice_limits import northern_limit
 from thalweg.network.network_concatenation import CanalLink, concatenate_networks
 from thalweg.planning.request.chart_restrictions import (
     ICE_LIMIT_NORTH,
@@ -15,6 +16,7 @@ from thalweg.planning.request.chart_restrictions import (
 )
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.sea_distance import sea_distance
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 CHART = Chart.gshhg("i")
@@ -163,3 +165,23 @@ def test_canals_and_passages_under_lower_bridges_are_closed(height, closed):
     assert names - {canal.name for canal in left.canals} == closed
     (bridge,) = find_passages(["Naeroysund"])
     assert bool(size_restriction(bridge, ship)) == (height == 45.0)
+
+
+@pytest.mark.parametrize(
+    ("places", "north"),
+    [
+        ([(69.0, 33.0), (51.9, 4.1)], 72.0),  # Murmansk, Rotterdam
+        ([(69.0, 33.0), (69.7, 170.3)], 79.5),  # Murmansk, Pevek: by Vilkitsky
+        ([(70.3, -148.5), (49.3, -123.1)], 79.5),  # Prudhoe Bay, Vancouver
+        ([(78.2, 15.6), (51.9, 4.1)], 90.0),  # Longyearbyen
+    ],
+)
+def test_ways_to_arctic_coasts_go_as_far_north_as_vilkitsky(places, north):
+    assert northern_limit(*places) == north
+
+
+def test_murmansk_to_pevek_leads_along_the_coast():
+    """It was refused, and planned by Panama (12,047 nm)."""
+    way = sea_distance("Murmansk", "Pevek")
+    assert "Vilkitsky" in way.straits and not way.canals
+    assert way.nm == pytest.approx(2400.0, rel=0.04)

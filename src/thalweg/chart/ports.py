@@ -239,7 +239,9 @@ class Ports:
         return self._misspelt(text, normalised_port_name(name))
 
     def _misspelt(self, text: str, wanted: str) -> InputError:
-        within = [n for n in self._by_name if len(wanted) >= 3 and wanted in n.split()]
+        within = [
+            n for n in self._by_name if len(wanted) >= 3 and wanted in n.replace("-", " ").split()
+        ]
         names = list(dict.fromkeys([*within[:3], *close_matches(wanted, self._by_name, 4)]))
         near = list(dict.fromkeys(_by_importance(self._by_name[name])[0] for name in names))[:5]
         return InputError(

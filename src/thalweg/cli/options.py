@@ -142,7 +142,8 @@ def add_price_options(group: Any) -> None:
         metavar="0|50|100",
         help="share of the voyage in scope of charges of the European Union [%%]: 100 between two "
         "of its ports, 50 to or from one; default with --ets-price and --eur-rate: by the "
-        "countries of the two ports of a plan (Union, Iceland, Norway)",
+        "countries of the two ports of a plan (Union, Iceland, Norway); a route of 'thalweg "
+        "evaluate' has no ports and needs it",
     )
     group.add_argument(
         "--ets-price",

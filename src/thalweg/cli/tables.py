@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from thalweg.route import Route
 
 _MAX_ROWS = 30
+_LEAST_WAIT_H = 0.05  # shorter waits are not listed [h]
 _WAYPOINT_COLUMNS = ("waypoint", "UTC", "course", "nm", "stw", "sog", "wait", "ukc")
 
 
@@ -253,6 +254,6 @@ def _waypoint_cells(row: dict[str, Any]) -> list[str]:
         number("distance_nm", 1),
         number("speed_through_water_kn", 1),
         number("speed_over_ground_kn", 1),
-        number("waiting_h", 2) if row.get("waiting_h") else "",
+        number("waiting_h", 2) if (row.get("waiting_h") or 0.0) >= _LEAST_WAIT_H else "",
         number("ukc_m", 1),
     ]

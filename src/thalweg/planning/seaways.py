@@ -29,11 +29,8 @@ from thalweg.network.alternatives.clear_water import (
 )
 from thalweg.network.alternatives.leg_rules import PolylineCoordinates
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
-from thalweg.network.global_grid.sea_graph import (
-    ICE_LATITUDES,
-    GraphClosures,
-    outside_ice,
-)
+from thalweg.network.global_grid.ice_limits import ICE_LATITUDES, northern_limit, outside_ice
+from thalweg.network.global_grid.sea_graph import GraphClosures
 from thalweg.network.global_grid.sea_graph_cache import edge_excess, sea_graph
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
@@ -177,8 +174,9 @@ class Seaways:
         if float(distance(*ends[0], *ends[1])) < 1.0:
             return [ends[0]]
         chart = self._open_chart
-        if outside_ice(*ends):
-            chart = chart.within(*ICE_LATITUDES, -180.0, 180.0)
+        south = ICE_LATITUDES[0] if outside_ice(*ends) else -90.0
+        if (north := northern_limit(*ends)) < 90.0:
+            chart = chart.within(south, north, -180.0, 180.0)
         off_land = _off_land(chart, ends, offing)
         over = replace(self, shoals=None).graph_path(start, goal)
         round_shoals = over if self.shoals is None else self.graph_path(start, goal)

@@ -40,6 +40,12 @@ from thalweg.network.global_grid.endpoint_attachment import (
     line_to_line_pairs,
 )
 from thalweg.network.global_grid.grid import GlobeGrid, GridResolution, globe_grid
+from thalweg.network.global_grid.ice_limits import (
+    ICE_LATITUDES,
+    PACK_ICE,
+    northern_limit,
+    outside_ice,
+)
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -50,12 +56,7 @@ _LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs 
 #: Water nearer to land than this counts up to `NEAR_LAND_FACTOR` times in the choice of the way.
 OFFING: Final = 2.0 * NAUTICAL_MILE
 NEAR_LAND_FACTOR: Final = 1.5
-#: Water beyond these latitudes [deg], where ice is likely, is used only by ways that begin or end
-#: there: 72 N closes the Northwest and Northeast Passages and leaves the North Cape open; south of
-#: 60 S is the Antarctic area of the Polar Code (SOLAS chapter XIV).
-ICE_LATITUDES: Final = (-60.0, 72.0)
-_ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
-_IN_ICE: Final = -2  # among the canals of edges
+_IN_ICE, _IN_PACK = -2, -3  # among the canals of edges
 _ROUND_HARBOUR: Final = HARBOUR + 12.0 * NAUTICAL_MILE  # with the cells of the grid of depth
 _LONGEST_EDGE: Final = 250e3  # of edges across a passage, between two coasts [m]
 
@@ -172,7 +173,7 @@ class SeaGraph:
         self, chart: Chart, ends: Sequence[Position], closures: GraphClosures
     ) -> FloatArray:
         """Return the weights for a way between two ends, inf where it may not go."""
-        closed = (*closures.canals, _IN_ICE) if outside_ice(*ends) else tuple(closures.canals)
+        closed = (*closures.canals, *_closed_in_ice(*ends))
         closed_here = _Closed(chart.fingerprint(), closed, tuple(closures.passages), chart)
         return _weight_without(self, closed_here)
 
@@ -316,10 +317,11 @@ def _weight_without(graph: SeaGraph, closed: _Closed) -> FloatArray:
     return weight
 
 
-def outside_ice(*places: Position) -> bool:
-    """Return whether all positions are between the latitudes where ice is likely."""
-    lowest, highest = ICE_LATITUDES[0] + _ICE_MARGIN, ICE_LATITUDES[1] - _ICE_MARGIN
-    return all(lowest <= place[0] <= highest for place in places)
+def _closed_in_ice(*places: Position) -> tuple[int, ...]:
+    """Return which edges in ice a way between positions does not use."""
+    if outside_ice(*places):
+        return _IN_ICE, _IN_PACK
+    return () if northern_limit(*places) > PACK_ICE else (_IN_PACK,)
 
 
 def _joint_pairs(joint: Attachment, at: int, lat: FloatArray, lon: FloatArray) -> Pairs:
@@ -338,7 +340,10 @@ def make_sea_graph(chart: Chart) -> SeaGraph:
     reach = _LINK_REACH * grid.spacing
     waters = ConnectedWaters.of_pairs(grid.lat, grid.lon, grid.pairs, usable, reach)
     pairs = [replace(grid.pairs, length=grid.pairs.length * _factors(sea, grid))]
-    canal = [np.where(_in_ice(grid), _IN_ICE, -1)]
+    lowest, highest = ICE_LATITUDES
+    in_ice = _beyond(grid, (grid.lat < lowest) | (grid.lat > highest))
+    canal = [np.where(in_ice, _IN_ICE, -1)]
+    canal[0][_beyond(grid, grid.lat > PACK_ICE)] = _IN_PACK
     lat, lon = [grid.lat], [grid.lon]
     count = len(grid.lat)
     for number, one in enumerate(chart.canals):
@@ -375,11 +380,9 @@ def _factors(chart: Chart, grid: GlobeGrid) -> FloatArray:
     return np.asarray(0.5 * (node[grid.pairs.first] + node[grid.pairs.second]))
 
 
-def _in_ice(grid: GlobeGrid) -> BoolArray:
-    """Return which pairs reach beyond the latitudes where ice is likely."""
-    lowest, highest = ICE_LATITUDES
-    beyond = (grid.lat < lowest) | (grid.lat > highest)
-    return np.asarray(beyond[grid.pairs.first] | beyond[grid.pairs.second])
+def _beyond(grid: GlobeGrid, nodes: BoolArray) -> BoolArray:
+    """Return which pairs have one of some nodes."""
+    return np.asarray(nodes[grid.pairs.first] | nodes[grid.pairs.second])
 
 
 def _grown(waters: ConnectedWaters, lat: FloatArray, lon: FloatArray) -> ConnectedWaters:

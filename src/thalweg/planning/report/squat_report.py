@@ -16,6 +16,7 @@ from thalweg.ship.models.squat_model import SQUAT_METHODS
 from thalweg.ship.performance_sheet_seaway import squat_of_sheet
 
 SQUAT_UNCOUNTED: Final = "The clearance is that at rest"  #: a note on squat begins so
+_TOUCHES: Final = 0.05  # clearance with squat that is none [m]
 _ROUNDING: Final = 0.005  # clearances are written to so much [m]
 
 
@@ -55,7 +56,9 @@ def squat_notes(route: Route, ship: Ship, min_ukc: float) -> list[str]:
     )
     when = format_time(float(route.samples["time"][at]))
     metres = f"{left[worst]:.1f} m are left under the keel"
-    if left[worst] < 0.0:
+    if left[worst] < _TOUCHES:
+        metres = "no water is left under the keel: she may touch the bottom"
+    if left[worst] < -_TOUCHES:
         metres = f"the ship is {-left[worst]:.1f} m too deep"
     required = f", less than the {min_ukc:g} m required" if min_ukc > 0.0 else ""
     return [

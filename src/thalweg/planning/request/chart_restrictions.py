@@ -12,6 +12,7 @@ from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.global_grid.ice_limits import northern_limit, on_ice_coast
 from thalweg.planning.request.offing_choice import ship_dimensions
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
@@ -90,6 +91,8 @@ def exclude_ice_latitudes(chart: Chart, ends: list[Endpoint]) -> Chart:
     if area.width < 360.0 or area.south > -89.0 or area.north < 89.0:
         return chart  # limited by the user
     north = max(ICE_LIMIT_NORTH, *(end.lat + _ICE_LIMIT_MARGIN for end in ends))
+    if any(on_ice_coast(end.lat, end.lon) for end in ends):
+        north = max(north, northern_limit(*((end.lat, end.lon) for end in ends)))
     south = min(ICE_LIMIT_SOUTH, *(end.lat - _ICE_LIMIT_MARGIN for end in ends))
     return chart.within(max(south, -90.0), min(north, 90.0), area.west, area.west + area.width)
 

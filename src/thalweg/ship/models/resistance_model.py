@@ -321,7 +321,9 @@ def _unreachable_speed_error(speeds: FloatArray, power: FloatArray, limit: float
             "Order a positive speed.",
             value=knots,
         )
-    needed = ", ".join(f"{p / 1000:.0f}" for p in power)
+    above = ~(power <= limit)
+    knots = ", ".join(f"{s / KNOT:.4g}" for s in speeds[above])
+    needed = ", ".join(f"{p / 1000:.0f}" for p in power[above])
     return InputError(
         f"The ship cannot be ordered to {knots} kn: it takes {needed} kW in calm water.",
         f"The engines give {limit / 1000:.0f} kW.",
