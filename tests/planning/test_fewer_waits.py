@@ -247,3 +247,15 @@ def test_a_route_stays_where_no_other_one_arrives_in_time(context):
         without_waits_above_limits(context, early, paths_with(early, near), last_departure=0.0)[1]
         == []
     )
+
+
+def test_a_deadline_that_is_missed_by_far_is_refused_before_refinement(planned, monkeypatch):
+    """It took 281 s to refuse a winter voyage that arrives a day late."""
+
+    def refined(*arguments, **options):
+        raise AssertionError("refined")
+
+    monkeypatch.setattr("thalweg.planning.single.stretch.refine_track", refined)
+    with pytest.raises(NoRouteError, match="No route arrives by 2026-05-01T12:00") as refusal:
+        planned(lambda t, lat, lon: 1.0 + 0.0 * t, arrive_by="2026-05-01T12:00Z")
+    assert "The earliest arrival is about 2026-05-01T16:1" in str(refusal.value)

@@ -200,7 +200,12 @@ def _be(names: list[str]) -> str:
 
 
 def late_arrival_error(
-    arrive_by: float, earliest: float, *, window: bool = False, approach: float = 0.0
+    arrive_by: float,
+    earliest: float,
+    *,
+    window: bool = False,
+    approach: float = 0.0,
+    about: bool = False,
 ) -> NoRouteError:
     """Build the error for a latest arrival that no route meets.
 
@@ -210,6 +215,7 @@ def late_arrival_error(
     earliest : Earliest possible arrival [s since 1970].
     window : Whether it is that of the shortest passage in a departure window.
     approach : Time in the approach of the port of arrival after both [s].
+    about : Whether the earliest arrival is that of the network, before refinement.
     """
     arrive_by, earliest = arrive_by + approach, earliest + approach
     if earliest <= arrive_by:  # in time, but not with this objective
@@ -221,6 +227,7 @@ def late_arrival_error(
             field="arrive_by",
         )
     subject = "shortest passage of the window arrives at" if window else "earliest arrival is"
+    subject += " about" if about else ""
     return NoRouteError(
         f"No route arrives by {format_time(arrive_by)}.",
         f"The {subject} {format_time(earliest)}.",

@@ -64,6 +64,7 @@ from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
+_REFINED_SHARE = 0.05  # of the time of a path, more than refinement saves
 _HORIZONS = (2.5, 8.0, 30.0)
 #: Isochrones are drawn until this multiple of the stretch's time.
 _ISOCHRONE_TIME_RATIO = 1.5
@@ -300,6 +301,12 @@ def _search(
             break
     if result.found:
         seas.horizon = number
+        saved = _REFINED_SHARE * result.duration + (_TWO_TIDES if result.waiting else 0.0)
+        if result.arrive > context.latest_arrival + saved:
+            raise late_arrival_error(
+                context.latest_arrival, result.arrive, about=True,
+                approach=context.approach_times[1],
+            )  # fmt: skip
     else:
         if arrive_by is not None:
             raise _late_arrival_error(context, network, limits, window, ends, seas)

@@ -47,8 +47,11 @@ def with_waits_in_shelter(
     -------
     Route
         The same line and speeds with one wait at the berth and one at most under way. The given
-        route where that takes over 10 % or costs over half more, or no such waits keep the limits.
+        route where that takes over 10 % or costs over half more, no such waits keep the limits, or
+        the sea is an ensemble.
     """
+    if context.sea.members:  # each has other weather in a wait
+        return route
     longest = (1.0 + _MOST_LATER) * route.time_h * HOUR
     latest = min(route.depart + longest, context.latest_arrival + 1.0)
     most = (1.0 + WORTH_OF_SHELTER) * value(route)
