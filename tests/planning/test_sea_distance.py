@@ -13,8 +13,10 @@ from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.distance_of_ship import distance_options
 from thalweg.planning.sea_distance import small_ship_distance
 from thalweg.planning.seaways import world_chart
+from thalweg.ship import Ship
 
 # Distances [nm] as tables commonly quote them, to about 1 %: New York to Colombo is quoted from NGA
 # Publication 151 (Distances Between Ports, 11th edition); the others are from general knowledge.
@@ -331,3 +333,32 @@ def test_second_entrances_on_the_side_of_the_way(start, goal, way, most):
     assert any(way in name for name, _ in found.approaches)
     assert any(way in name for name, _ in found.approaches)
     assert found.nm < most
+
+
+@pytest.mark.slow
+def test_the_distance_of_a_ship_has_what_her_size_closes_and_opens(capsys):
+    """A car carrier of 60 m air draught goes round the Skaw, a coaster through the Kiel Canal."""
+
+    def answer(*options):
+        assert main(["distance", "Rostock", "Antwerp", "--json", "--quiet", *options]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    coaster = Ship.simple(speed_kn=11.0, draught_m=5.7, length_m=90.0, breadth_m=13.6)
+    chart = world_chart()
+    assert distance_options(coaster, chart)["open"] == ("all",)
+    usual = answer("--ship", "handysize-bulker")
+    assert usual["canals"] == ["Kiel Canal"]
+    deep = distance_options(tall_ship(60.0), chart)
+    assert "kiel" in deep["avoid"] and not deep["open"]
+    without = answer("--ship", "handysize-bulker", "--avoid", "kiel")
+    assert without["canals"] == [] and without["distance_nm"] > usual["distance_nm"] + 200.0
+    assert answer("--draught", "9.5")["distance_nm"] == pytest.approx(usual["distance_nm"])
+
+
+def tall_ship(metres):
+    """Return a ship of 200 m with this air draught [m]."""
+    hull = {
+        "length_between_perpendiculars_m": 200.0, "breadth_m": 32.0, "draught_m": 9.8,
+        "block_coefficient": 0.6, "air_draught_m": metres,
+    }  # fmt: skip
+    return Ship.from_dict({"name": "tall", "hull": hull, "speeds_kn": [15.0]})

@@ -65,6 +65,13 @@ def add_command(commands: Any) -> None:
         "beyond one and a half draughts [m] where it can, as plans do; default: shoals do not "
         "count",
     )
+    parser.add_argument(
+        "--ship",
+        metavar="FILE|NAME",
+        help="ship file or name: her draught, the canals and passages that are too small for her, "
+        "and passages for small ships where she is shorter than 120 m, as plans have them; "
+        "--draught, --avoid and --open come first",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
@@ -81,32 +88,47 @@ def run(arguments: argparse.Namespace) -> int:
         small_ship_distance,
     )
 
-    avoid: tuple[str, ...] = SMALL_CANALS
+    of_ship = _options_of_ship(arguments.ship)
+    avoid: tuple[str, ...] = of_ship.get("avoid", SMALL_CANALS)
     if arguments.avoid is not None:
         names = [name for text in arguments.avoid for name in names_in_list(text)]
-        avoid = tuple(name for name in names if name != "none")
+        wanted = tuple(name for name in names if name != "none")
+        avoid = (*wanted, *of_ship.get("avoid", ()))
     arguments.progress("finding the shortest way")
     ends = arguments.start, arguments.goal
+    draught = of_ship.get("draught_m") if arguments.draught is None else arguments.draught
     options: dict[str, Any] = {
-        "avoid": avoid, "offing_nm": arguments.offing, "draught_m": arguments.draught,
+        "avoid": avoid, "offing_nm": arguments.offing, "draught_m": draught,
     }  # fmt: skip
-    way = sea_distance(*ends, via=arguments.via, open=tuple(arguments.open), **options)
+    opened = tuple(arguments.open) or of_ship.get("open", ())
+    way = sea_distance(*ends, via=arguments.via, open=opened, **options)
     days = None if arguments.speed is None else way.days(arguments.speed)
     if arguments.json:
         more = {} if days is None else {"speed_kn": arguments.speed, "days": days}
         print(json.dumps(way.to_dict() | more, indent=2, allow_nan=False))
     else:
         _print_distance(way, arguments.speed, days)
-        if arguments.draught is None:
+        if draught is None:
             print(
                 f"  keeps off water shallower than {USUAL_DEPTH:g} m; draught was not considered: "
                 "give --draught for a ship"
             )
-        if not (arguments.open or arguments.via):
+        if not (arguments.open or arguments.via or arguments.ship):
             small = small_ship_distance(way, *ends, **options)
             if small is not None:
                 _print_small_ships(way, small)
     return SUCCESS
+
+
+def _options_of_ship(path: str | None) -> dict[str, Any]:
+    """Return the options of the distance for a ship; none without one."""
+    if path is None:
+        return {}
+    from thalweg.planning.request.distance_of_ship import distance_options
+    from thalweg.planning.seaways import world_chart
+    from thalweg.ship import Ship
+
+    return distance_options(Ship.load(path), world_chart())
 
 
 def names_in_list(text: str) -> list[str]:
