@@ -44,7 +44,7 @@ def with_best_waits(
 
     Returns
     -------
-    route : It arrives at most a minute later, or up to a tenth of the voyage where the ship would
+    route : It arrives at most a minute later, or up to 30 % of the voyage where the ship would
         wait at sea in weather above her limits.
     notes : What such a wait takes.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from thalweg.core.time import duration_text, utc_text
+from thalweg.core.time import duration_text
 from thalweg.core.units import HOUR, MINUTE
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_texts
@@ -16,7 +16,7 @@ from thalweg.route.refinement.better_route import shorten_waits
 from thalweg.search import SearchResult
 
 #: Shares of the time of the voyage by which such a route may arrive later, the least first.
-_LATER: Final = (0.01, 0.025, 0.05, 0.1)
+_LATER: Final = (0.01, 0.025, 0.05, 0.1, 0.2, 0.3)
 _LEAST_LATER: Final = 0.5 * HOUR  # ... and at least [s]
 _MOST_WITHOUT_WAITS: Final = 3  # paths without waits that are tried
 
@@ -34,8 +34,8 @@ def without_waits_above_limits(
 
     Returns
     -------
-    route : Of the latest departure that arrives in time. The given one where it waits in no such
-        weather, or no other one that arrives at most a tenth of the voyage later was found.
+    route : Of the departure that arrives first so. The given one where it waits in no such
+        weather, or no other one that arrives at most 30 % of the voyage later was found.
     notes : One where the route is another one.
     """
     above = waiting_weather_texts(route, context.ship) if route.feasible else []
@@ -54,8 +54,8 @@ def without_waits_above_limits(
         if tried.arrive <= latest:
             later = tried.arrive - route.arrive
             return tried, [] if later < MINUTE else [
-                f"Arrives {duration_text(later)} later than is possible: to arrive at "
-                f"{utc_text(route.arrive)} the ship would have to wait at sea {above[0]}."
+                f"Arrives {duration_text(later)} later than is possible: to arrive earlier the ship "
+                f"would have to wait at sea {above[0]}."
             ]
     return route, []
 

@@ -18,7 +18,7 @@ from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.route import Route, Track
 from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
-_MOST_LATER: Final = 0.1  # share of the time by which a route with other waits may arrive later
+_MOST_LATER: Final = 0.3  # share of the time by which a route with other waits may arrive later
 _MOST_PLACES: Final = 16  # waypoints at which a wait is tried
 _AT_BERTH: Final = (1.0, 0.75, 0.5, 0.25, 0.0)  # shares of the wait that are spent at the berth
 #: By how much all waits together may be longer or shorter [h].
@@ -47,7 +47,7 @@ def with_waits_in_shelter(
     -------
     Route
         The same line and speeds with one wait at the berth and one at most under way. The given
-        route where that takes over 10 % or costs over half more, no such waits keep the limits, or
+        route where that takes over 30 % or costs over half more, no such waits keep the limits, or
         the sea is an ensemble.
     """
     if context.sea.members:  # each has other weather in a wait
