@@ -171,9 +171,10 @@ def test_canals_and_passages_under_lower_bridges_are_closed(height, closed):
     ("places", "north"),
     [
         ([(69.0, 33.0), (51.9, 4.1)], 72.0),  # Murmansk, Rotterdam
-        ([(69.0, 33.0), (69.7, 170.3)], 79.5),  # Murmansk, Pevek: by Vilkitsky
-        ([(70.3, -148.5), (49.3, -123.1)], 79.5),  # Prudhoe Bay, Vancouver
-        ([(78.2, 15.6), (51.9, 4.1)], 90.0),  # Longyearbyen
+        ([(69.0, 33.0), (69.7, 170.3)], 81.0),  # Murmansk, Pevek: by Vilkitsky
+        ([(70.3, -148.5), (49.3, -123.1)], 81.0),  # Prudhoe Bay, Vancouver
+        ([(78.2, 15.6), (51.9, 4.1)], 81.0),  # Longyearbyen
+        ([(82.5, -62.3), (51.9, 4.1)], 90.0),  # Alert
     ],
 )
 def test_ways_to_arctic_coasts_go_as_far_north_as_vilkitsky(places, north):

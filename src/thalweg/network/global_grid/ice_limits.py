@@ -14,8 +14,8 @@ _ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
 _ICE_COAST: Final = 66.5  # latitude from which on ports are reached through ice [deg] ...
 _ICE_FREE: Final = (-60.0, 55.0)  # ... outside these longitudes [deg]
 #: Latitude [deg] that only ways to places near it or beyond it pass.
-PACK_ICE: Final = 79.5
-_PACK_MARGIN: Final = 3.0  # [deg]
+PACK_ICE: Final = 81.0
+_PACK_MARGIN: Final = 2.5  # [deg]
 
 
 def outside_ice(*places: Position) -> bool:

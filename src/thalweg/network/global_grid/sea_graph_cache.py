@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from thalweg.core.types import FloatArray
 
 _DRAUGHTS_KEPT: Final = 8  # on disk, of each graph
-_FORMAT: Final = 6  # increase when the arrays or their construction change
+_FORMAT: Final = 7  # increase when the arrays or their construction change
 
 
 def sea_graph(chart: Chart) -> SeaGraph:

@@ -87,12 +87,18 @@ def ice_notes_of_way(line: Sequence[Position]) -> tuple[str, ...]:
     places = np.array(line, float)
     lat, lon, _ = densify(places[:, 0], places[:, 1], _SPACING)
     found: dict[str, str] = {}
+    far = np.abs(lat)
     for area in ICE_AREAS:  # of one name the longest season is first
-        if area.name not in found and area.contains(lat, lon).any():
+        inside = area.contains(lat, lon)
+        far[inside] = 0.0
+        if area.name not in found and inside.any():
             found[area.name] = f"{area.name} {area.season}"
-    if not found:
-        return ()
-    return (f"Ice is usual on the way in: {'; '.join(found.values())}.",)
+    notes = (f"Ice is usual on the way in: {'; '.join(found.values())}.",) if found else ()
+    worst = int(np.argmax(far))
+    if far[worst] < _LATITUDE:
+        return notes
+    place = format_position_minutes(lat[worst], lon[worst])
+    return (*notes, f"The way reaches {place}, and sea ice is not modelled.")
 
 
 def _load_line_notes(time: FloatArray, lat: FloatArray) -> list[str]:

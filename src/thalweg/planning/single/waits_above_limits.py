@@ -54,8 +54,8 @@ def without_waits_above_limits(
         if tried.arrive <= latest:
             later = tried.arrive - route.arrive
             return tried, [] if later < MINUTE else [
-                f"Arrives {duration_text(later)} later than is possible: to arrive earlier the ship "
-                f"would have to wait at sea {above[0]}."
+                f"Arrives {duration_text(later)} later than is possible: to arrive earlier the "
+                f"ship would have to wait at sea {above[0]}."
             ]
     return route, []
 
