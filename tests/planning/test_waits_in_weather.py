@@ -9,6 +9,7 @@ import xarray as xr
 from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.plan_summary import limits_text
+from thalweg.planning.report.route_summary import weather_text
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.planning.single.sheltered_waits import with_sheltered_waits
 
@@ -58,19 +59,36 @@ def test_a_ship_waits_at_her_berth_where_waves_are_too_high_at_sea(planned):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("height", "words"),
-    [
-        (KNOWN, "in waves of up to 6.0 m, above the limit of 4.0 m"),
-        (UNKNOWN, "where the data have no waves for 1"),
-    ],
-)
-def test_a_wait_that_has_no_other_place_is_the_first_note(planned, height, words):
-    found = planned(until=36, height=height)
+def test_a_wait_that_has_no_other_place_is_the_first_note(planned):
+    """From her berth she would arrive after 84 h, half as late again."""
+    found = planned(until=60, height=KNOWN)
     assert found.best.waiting_h > 20.0
     (note,) = (note for note in found.notes if note.startswith("Waits at sea"))
-    assert words in note
+    assert "in waves of up to 6.0 m, above the limit of 4.0 m" in note
     assert "waves under way" in limits_text(found)
+    assert "; 6.0 m in a wait at sea" in weather_text(found.best, None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("height", "hours", "words"),
+    [
+        (KNOWN, 60.4, "in waves of up to 6.0 m, above the limit of 4.0 m."),
+        (UNKNOWN, 61.3, "where the data have no waves for 17.9 h of it."),
+    ],
+)
+def test_a_ship_arrives_later_where_she_would_wait_at_sea_in_high_or_unknown_waves(
+    planned, height, hours, words
+):
+    """By the wait at sea she arrives after 55.4 h."""
+    found = planned(until=36, height=height)
+    assert found.best.feasible
+    assert np.flatnonzero(np.asarray(found.best.track.wait)).tolist() == [0]
+    assert found.best.time_h == pytest.approx(hours, abs=0.3)
+    assert not any(note.startswith("Waits at sea") for note in found.notes)
+    (note,) = (note for note in found.notes if "later than is possible" in note)
+    assert note.startswith("Arrives 5 h ") and "would have to wait at sea 25.4 h" in note
+    assert note.endswith(words)
 
 
 @pytest.mark.slow

@@ -289,7 +289,7 @@ def _assemble_plan(
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [note for stretch in stretches for note in stretch.notes]
     notes += route_warnings(context, route)
-    notes += lane_detour_notes(context.chart, [stretch.network for stretch in stretches])
+    notes += lane_detour_notes(context.chart, [stretch.network for stretch in stretches], route)
     return Plan(
         voyage=voyage,
         routes=(route,),

@@ -286,7 +286,7 @@ def _notes(
         )
     notes += route_warnings(context, best)
     notes += control_area_notes(context.chart, [item.route for item in ordered])
-    notes += lane_detour_notes(context.chart, [explored[0].alternative.network])
+    notes += lane_detour_notes(context.chart, [explored[0].alternative.network], best)
     slowest = max(item.route.arrive for item in ordered)
     bounded = context.voyage.arrive_by is None and math.isfinite(context.data_end)
     if bounded and slowest > context.data_end - _DATA_END_MARGIN:

@@ -53,6 +53,7 @@ from thalweg.planning.pareto.waiting.waits_of_fronts import (
 from thalweg.planning.pareto.weighted_sums import normalised_trade_off
 from thalweg.planning.plan import Plan
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.waiting_report import waiting_weather_texts
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.single.lane_keeping import in_lanes_of_traffic
@@ -67,6 +68,7 @@ _NETWORK_ONLY = (
     "Length, land and encounters were counted on the network only, encounters at the highest "
     "speed; the routes were not refined in open water."
 )
+_WORTH_A_NOTE = 0.01  # share of the value
 _MAX_ROUTES_INTERRUPTED = 20  # after Ctrl-C
 _SECONDS_INTERRUPTED = 3.0  # for the referee after Ctrl-C, once one route is scored
 
@@ -304,11 +306,29 @@ def _ordered(
     steady += two_speeds_after_wait(trade_off, steady)
     others = [one for one in scored if one.candidate.stage != "one wait"]
     blocked = in_speed_blocks(trade_off, non_dominated_candidates(others)) if others else []
-    found = non_dominated_candidates([*blocked, *steady])
-    if not any(np.any(one.route.track.wait[1:]) for one in found):
-        return found
-    screen = WaitScreen(evaluator_around_routes(trade_off, [one.route for one in found]))
-    return non_dominated_candidates([_with_fewer_waits(trade_off, one, screen) for one in found])
+    kept = non_dominated_candidates([*blocked, *steady])
+    if any(np.any(one.route.track.wait[1:]) for one in kept):
+        screen = WaitScreen(evaluator_around_routes(trade_off, [one.route for one in kept]))
+        kept = non_dominated_candidates([_with_fewer_waits(trade_off, one, screen) for one in kept])
+    _note_waits_left_out(trade_off, scored, kept)
+    return kept
+
+
+def _note_waits_left_out(
+    trade_off: TradeOffContext, scored: list[RefereedCandidate], kept: list[RefereedCandidate]
+) -> None:
+    """Note what waits at sea above the limits would save, where no such route is left."""
+    ship, objective = trade_off.context.ship, trade_off.objective
+    values = [one.value for one in scored if waiting_weather_texts(one.route, ship)]
+    if not values or any(waiting_weather_texts(one.route, ship) for one in kept):
+        return
+    least = min(one.value for one in kept)
+    if min(values) < (1.0 - _WORTH_A_NOTE) * least:
+        trade_off.notes.append(
+            "Routes on which the ship would wait at sea in waves or wind above her limits are left "
+            f"out; the best of them has {min(values):.3g} {objective.unit}, in place of "
+            f"{least:.3g} {objective.unit}."
+        )
 
 
 def _with_fewer_waits(

@@ -66,7 +66,9 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
     ]
 
 
-def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
+def lane_detour_notes(
+    chart: Chart, networks: Sequence[Network], route: Route | None = None
+) -> list[str]:
     """Return a note where lanes and inshore traffic zones make the shortest way much longer.
 
     Shortest paths of the networks are compared, with the lanes and without.
@@ -75,6 +77,7 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
     ----------
     chart : With the lanes.
     networks : Of the stretches of a voyage, each with start and goal.
+    route : Schemes against which it runs are not named.
 
     Returns
     -------
@@ -83,6 +86,7 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
     if not _has_schemes(chart):
         return []
     kept = free = 0.0
+    own = _legs(*_positions(route)) if route is not None else None
     names: dict[str, list[str]] = {}
     for network in networks:
         edges, length = network.edges, network.edges.length
@@ -96,18 +100,19 @@ def lane_detour_notes(chart: Chart, networks: Sequence[Network]) -> list[str]:
         kept += float(np.sum(distance(*_legs(*places[0]))))
         free += float(np.sum(distance(*_legs(*places[1]))))
         for inshore in (False, True):
+            against = {} if own is None else _metres(chart, own, inshore=inshore)
             for name, metres in _metres(chart, _legs(*places[1]), inshore=inshore).items():
-                if metres > _LEAST:
+                if metres > _LEAST >= against.get(name, 0.0):
                     names.setdefault(_KEPT_OUT[inshore], []).append(name)
     longer = kept - free
     if not names or (longer < _LONG_DETOUR and longer < _LARGE_DETOUR * free):
         return []
     return [
         f"{LANE_DETOUR} {_listed(names)} makes the shortest way about "
-        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer: Rule 10 requires "
-        "it. An inshore traffic zone is open to ships under 20 m and to voyages from or to a place "
-        "inside it (Rule 10 (d)). Only to compare, --ignore-lanes plans without schemes: do not "
-        "sail such a route where the chart shows them."
+        f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer on the network of "
+        "the search: Rule 10 requires ships to keep out. An inshore traffic zone is open to ships "
+        "under 20 m and to voyages from or to a place inside it (Rule 10 (d)). Only to compare, "
+        "--ignore-lanes plans without schemes: do not sail such a route where the chart shows them."
     ]
 
 

@@ -36,6 +36,7 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
 _UNDER_KEEL_CLEARANCE: Final = codes.REASONS[codes.DEPTH]
 _SAME_CLEARANCE: Final = 0.005  # [m]
+_TENTH: Final = 0.1  # by which waves in a wait are higher to be named [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SOURCES: Final = {  # other sources of prices by their own name
     "request": "given",
@@ -200,6 +201,7 @@ def weather_text(route: Route, sea: Sea | None) -> str:
         at = int(np.nanargmax(waves))
         more = "" if wind is None else f" with wind of {wind[at]:.0f} kn"
         found = f"highest waves {waves[at]:.1f} m{more}, {_place(route, at)}"
+        found += _waves_in_waits(route, float(waves[at]))
         return found + _ambient_text(sea, float(waves[at])) + _unknown_text(route, sea, waves)
     for values, word in ((wind, "wind"), (current, "current")):
         if values is not None and np.nanmax(values, initial=0.0) > 0.0:
@@ -214,6 +216,15 @@ def weather_text(route: Route, sea: Sea | None) -> str:
     if known and not any(np.isfinite(values).any() for values in known):
         return "not known: the data have no values on the way at that time"
     return "calm or not known: no wind, waves or currents in the data"
+
+
+def _waves_in_waits(route: Route, under_way: float) -> str:
+    """Return the highest waves while the ship waits at sea, where they are higher [m]."""
+    if not route.wait_samples or _WAVES not in route.wait_samples:
+        return ""
+    at_sea = route.wait_samples["leg"] > 0
+    highest = float(np.nanmax(route.wait_samples[_WAVES][at_sea], initial=0.0))
+    return f"; {highest:.1f} m in a wait at sea" if highest >= under_way + _TENTH else ""
 
 
 def _unknown_text(route: Route, sea: Sea | None, waves: np.ndarray) -> str:

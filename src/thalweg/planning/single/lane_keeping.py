@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.zones.traffic_schemes import TRAFFIC_SCHEMES, TrafficScheme
+from thalweg.chart.zones.traffic_schemes import INSHORE, TRAFFIC_SCHEMES, TrafficScheme
 from thalweg.core.geodesy import Position, distance, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -19,6 +19,7 @@ from thalweg.route import Route, Track
 from thalweg.route.refinement.better_route import comparison_key
 
 _LEAST: Final = 1.0 * NAUTICAL_MILE  # shorter stretches against the traffic are crossings
+_MOST_LONGER: Final = 1.1  # times as long as what they replace may the new legs be
 _SHARES: Final = (0.5, 0.3, 0.75)  # of the width of the lane, from the separation zone
 _EARLIER: Final = (0, 1, 2, 3)  # waypoints before and after the stretch from which she may go by
 
@@ -44,7 +45,7 @@ def in_lanes_of_traffic(
 
     A network with long edges may have none in the lane of a strait. Each scheme of the package is
     treated on its own: the waypoints inside are replaced by those of the lane, where the way is
-    open and shorter with the additions for miles against the traffic.
+    open, hardly longer, and shorter with the additions for miles against the traffic.
 
     Parameters
     ----------
@@ -69,7 +70,8 @@ def _by_lane(
     group = chart.zones.lane_group
     against = np.zeros(len(length))
     for leg, lane, share in zip(*group.shares_against(*legs), strict=True):
-        if group.lanes[lane].name.partition(",")[0] == scheme.name:
+        name, _, part = group.lanes[lane].name.partition(", ")
+        if name == scheme.name and part != INSHORE:
             against[leg] += share * length[leg]
     wrong = np.flatnonzero(against)
     if not wrong.size or against.sum() < least:
@@ -88,6 +90,8 @@ def _by_lane(
             part = slice(begin, begin + len(places) + 2)
             lat, lon = tried.lat[part], tried.lon[part]
             if np.any(chart.legs_blocked(*_legs(lat, lon))):
+                continue
+            if _length(lat, lon) > _MOST_LONGER * _length(track.lat[own], track.lon[own]) + _LEAST:
                 continue
             gain = cost - _penalised(chart, lat, lon)
             if gain > most:
@@ -149,6 +153,10 @@ def _with_places(track: Track, begin: int, end: int, places: Sequence[Position])
     held = np.full(count + 1, setting[begin])
     setting = np.concatenate([setting[:begin], held, setting[end:]])
     return Track(joined[0], joined[1], track.depart, joined[2], setting)
+
+
+def _length(lat: FloatArray, lon: FloatArray) -> float:
+    return float(np.sum(np.asarray(distance(*_legs(lat, lon)))))
 
 
 def _penalised(chart: Chart, lat: FloatArray, lon: FloatArray) -> float:

@@ -10,7 +10,7 @@ from thalweg.core.units import HOUR, MINUTE
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_texts
 from thalweg.planning.single.late_paths import LatePaths, after_wait_at_berth
-from thalweg.planning.single.sheltered_waits import with_sheltered_waits
+from thalweg.planning.single.sheltered_waits import routes_with_one_wait, with_sheltered_waits
 from thalweg.route import Route
 from thalweg.route.refinement.better_route import shorten_waits
 from thalweg.search import SearchResult
@@ -50,7 +50,7 @@ def without_waits_above_limits(
         tried = with_sheltered_waits(context, tried, latest)
         if not tried.feasible or waiting_weather_texts(tried, context.ship):
             continue
-        tried = shorten_waits(tried, context.evaluate)  # she may have left as late as she could
+        tried = _from_berth(context, tried, latest)
         if tried.arrive <= latest:
             later = tried.arrive - route.arrive
             return tried, [] if later < MINUTE else [
@@ -58,6 +58,19 @@ def without_waits_above_limits(
                 f"ship would have to wait at sea {above[0]}."
             ]
     return route, []
+
+
+def _from_berth(context: PlanningContext, route: Route, latest: float) -> Route:
+    """Return a route with its waits at the berth, as short as the limits allow, where that is so.
+
+    A path of a late departure leaves as late as it can.
+    """
+    if route.track.wait[1:].any():
+        at_berth = next(routes_with_one_wait(context, route))
+        if not at_berth.feasible or at_berth.arrive > latest:
+            return route
+        route = at_berth
+    return shorten_waits(route, context.evaluate)
 
 
 def _late_paths(route: Route, paths: LatePaths, latest: float) -> Iterator[SearchResult]:

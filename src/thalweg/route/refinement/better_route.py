@@ -45,7 +45,7 @@ _RASTER_EDGE_SHARE = 0.04  # distance to the edge that counts as near, as a shar
 # (step of `TIGHTENING`, whether it may wait anywhere), in the order of attempts
 _ATTEMPTS = ((0, True), (1, True), (2, True), (3, True), (0, False), (2, False))
 _ATTEMPTS_WITHOUT_WAITING = 4  # those that differ for a ship that does not wait
-_WAIT_TOLERANCE = 5.0  # seconds to which waits are shortened, or this share of the voyage if less:
+_WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
 _WAIT_TOLERANCE_SHARE = 1e-5
 _FIRST_SHORTER = 30.0  # by which a wait is shortened first [s]
 _WAIT_EXTENSIONS = (
@@ -210,9 +210,7 @@ def _touches_raster_edge(track: Track, fields: GridFields) -> bool:
 
 
 def shorten_waits(route: Route, score: ScoreFunction) -> Route:
-    """Return the route with every wait as short as is feasible for the referee.
-
-    That is to 1e-5 of the voyage, at most 5 seconds.
+    """Return the route with every wait as short as is feasible for the referee, to half a second.
 
     Frozen fields blur the time at which a bar opens by up to one of their time steps; the referee
     knows it exactly. A wait that is too short is extended first.

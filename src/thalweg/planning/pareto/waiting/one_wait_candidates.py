@@ -21,14 +21,17 @@ from thalweg.planning.pareto.trade_off_context import (
     TradeOffContext,
     spread_settings,
 )
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import LEAST_WAIT_H
 from thalweg.planning.single.route_candidates import track_from_result
 from thalweg.route import Route, Track
+from thalweg.search import SearchResult
 from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.latest_departure import departures_without_waits, latest_departure
 
 _MOST_SETTINGS: Final = 8
 _EDGES: Final = 60  # of a line
+_LONG_WAIT: Final = 1800.0  # of a path, for which later departures are tried [s]
 _LATER: Final = 30.0  # than the earliest arrival at a speed [s]
 _STEP, _STEPS = 3600.0, 12  # of later arrivals [s]: half a day, as tides
 
@@ -43,7 +46,8 @@ def one_wait_candidates(
 
     Parameters
     ----------
-    explored : Alternatives; on the lines of the fastest routes that wait.
+    explored : Alternatives; on the lines of the fastest routes that wait, and on the networks of
+        those where paths wait under way for weather.
     """
     context = trade_off.context
     if not (context.voyage.wait and trade_off.is_refined) or len(trade_off.settings) < 2:
@@ -52,6 +56,8 @@ def one_wait_candidates(
     for one in explored:
         if trade_off.interrupt_guard.stopped():
             break
+        if _waits_for_weather(context, one):
+            found += _leaving_later(trade_off, one)
         if not one.fastest.feasible or one.fastest.waiting_h <= LEAST_WAIT_H:
             continue
         network = _network_of(trade_off, one.fastest)
@@ -62,6 +68,45 @@ def one_wait_candidates(
                 for track in _waiting_once(trade_off, network, horizon, setting)
             ]
     return found
+
+
+def _waits_for_weather(context: PlanningContext, one: ExploredAlternative) -> bool:
+    """Return whether paths of the front wait under way, where limits of waves or wind may be."""
+    limits = context.ship.limits
+    if math.isinf(limits.wave_height) and math.isinf(limits.wind_speed):
+        return False
+    points = one.exact.points if one.exact else ()
+    return any(
+        np.max(point.path_depart[1:-1] - point.path_arrive[1:-1], initial=0.0) > _LONG_WAIT
+        for point in points
+    )
+
+
+def _leaving_later(trade_off: TradeOffContext, one: ExploredAlternative) -> list[TrackCandidate]:
+    """Return candidates that wait at the berth only, on the network of an alternative."""
+    context, network = trade_off.context, one.alternative.network
+    meta, depart = network.meta, context.voyage.earliest_departure
+    last = min(context.latest_arrival, float(one.frozen.stations.times[-1]))
+    query = ArrivalQuery(meta.start, meta.goal, depart)
+    found = []
+    for setting in spread_settings(trade_off.settings, _MOST_SETTINGS).tolist():
+        ship = ship_on_network(trade_off, network, one.frozen, setting)
+        results = departures_without_waits(ship, query, last)
+        chosen = [*results[:1], *sorted(results[1:], key=lambda result: result.duration)[:1]]
+        tracks = [_from_berth(network, result, setting, depart) for result in chosen]
+        found += [
+            TrackCandidate(track, "one wait", one.alternative.name, math.nan, math.nan)
+            for track in tracks
+        ]
+    return found
+
+
+def _from_berth(network: Network, result: SearchResult, setting: int, depart: float) -> Track:
+    """Return the track of a path with the wait at the berth since a departure [s]."""
+    track = track_from_result(network, result, setting)
+    wait = np.array(track.wait, float)
+    wait[0] += track.depart - depart
+    return track.replaced(depart=depart, wait=wait)
 
 
 def _network_of(trade_off: TradeOffContext, route: Route) -> Network:
@@ -98,10 +143,4 @@ def _waiting_once(
     if any(result.waiting > _LATER for result in chosen):  # at sea, perhaps above her limits
         without = departures_without_waits(ship, query, last)
         chosen += [*without[:1], *sorted(without[1:], key=lambda one: one.duration)[:1]]
-    tracks = []
-    for result in chosen:
-        track = track_from_result(network, result, setting)
-        wait = np.array(track.wait, float)
-        wait[0] += track.depart - depart
-        tracks.append(track.replaced(depart=depart, wait=wait))
-    return tracks
+    return [_from_berth(network, result, setting, depart) for result in chosen]
