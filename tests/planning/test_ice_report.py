@@ -9,7 +9,11 @@ from thalweg import Sea
 from thalweg.chart.ice_areas import ICE_AREAS
 from thalweg.chart.passages import PASSAGES
 from thalweg.core.time import parse_time
-from thalweg.planning.report.ice_report import ice_notes_of_way, ice_warnings
+from thalweg.planning.report.ice_report import (
+    ice_notes_of_way,
+    ice_warnings,
+    way_left_out_notes,
+)
 from thalweg.planning.report.note_order import count_of_dangers
 
 LULEA_TO_SEA = ([65.3, 64.0, 62.0, 59.0], [22.6, 22.0, 19.5, 20.0])
@@ -136,3 +140,19 @@ def test_ways_without_a_date_name_areas_and_months_of_ice():
         "Southern Ocean inside the limit of icebergs in all months."
     )
     assert ice_notes_of_way([(-34.0, 18.0), (-40.0, 80.0), (-41.0, 174.0)]) == ()
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "miles", "noted"),
+    [
+        ((69.0, 33.0), (35.4, 139.7), 12659.0, True),  # Murmansk, Yokohama by Suez
+        ((69.7, 30.0), (49.3, -123.1), 9438.0, True),  # Kirkenes, Vancouver by Panama
+        ((69.0, 33.0), (69.7, 170.3), 2374.0, False),  # Pevek: through the ice
+        ((51.9, 4.1), (35.4, 139.7), 11200.0, False),  # Rotterdam: as ships go
+        ((69.0, 33.0), (51.9, 4.1), 1700.0, False),
+    ],
+)
+def test_a_way_that_ice_makes_much_longer_is_noted(start, goal, miles, noted):
+    notes = way_left_out_notes(start, goal, 1852.0 * miles)
+    assert bool(notes) is noted
+    assert all("Northern Sea Route" in note for note in notes)

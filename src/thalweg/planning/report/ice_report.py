@@ -9,13 +9,17 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart.ice_areas import ICE_AREAS, IceArea
-from thalweg.core.geodesy import Position, densify, format_position_minutes
+from thalweg.core.geodesy import Position, densify, distance, format_position_minutes
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.global_grid.ice_limits import outside_ice
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.sea.standard_names import ICE
 
+_FAR_NORTH: Final = 60.0  # latitude of an end from which on ways through ice are of use [deg]
+_BY_THE_NORTH: Final = 68.0  # latitude that the geodesic reaches then [deg]
+_ROUNDABOUT: Final = 1.5  # times the geodesic
 _LATITUDE: Final = 72.0  #: [deg] beyond which ice is likely in all months
 _OPEN_WATER: Final = 0.1  #: greatest concentration of ice that counts as open water
 REACHES_ICE: Final = "The route reaches"  #: a note on ice begins so
@@ -99,6 +103,28 @@ def ice_notes_of_way(line: Sequence[Position]) -> tuple[str, ...]:
         return notes
     place = format_position_minutes(lat[worst], lon[worst])
     return (*notes, f"The way reaches {place}, and sea ice is not modelled.")
+
+
+def way_left_out_notes(start: Position, goal: Position, length: float) -> tuple[str, ...]:
+    """Return a note where ice closes a shorter way between two places far north.
+
+    Parameters
+    ----------
+    start, goal : (lat, lon) [deg].
+    length : Of the way [m].
+    """
+    if max(start[0], goal[0]) < _FAR_NORTH or not outside_ice(start, goal):
+        return ()
+    if length < _ROUNDABOUT * float(distance(*start, *goal)):
+        return ()
+    ends = np.array([start, goal], float)
+    lat, _, _ = densify(ends[:, 0], ends[:, 1], _SPACING)
+    if lat.max() < _BY_THE_NORTH:
+        return ()
+    return (
+        "Water beyond 72 N is used only from and to arctic coasts: the Northern Sea Route and the "
+        "Northwest Passage are left out. Give a place there for that way, such as --via Pevek.",
+    )
 
 
 def _load_line_notes(time: FloatArray, lat: FloatArray) -> list[str]:
