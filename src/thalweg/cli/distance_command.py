@@ -125,10 +125,11 @@ def _options_of_ship(path: str | None) -> dict[str, Any]:
     if path is None:
         return {}
     from thalweg.planning.request.distance_of_ship import distance_options
+    from thalweg.planning.sea_distance import SMALL_CANALS
     from thalweg.planning.seaways import world_chart
     from thalweg.ship import Ship
 
-    return distance_options(Ship.load(path), world_chart())
+    return distance_options(Ship.load(path), world_chart(), SMALL_CANALS)
 
 
 def names_in_list(text: str) -> list[str]:

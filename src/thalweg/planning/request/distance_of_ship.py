@@ -7,17 +7,19 @@ from typing import Any
 from thalweg.chart import Chart
 from thalweg.chart.passages import SMALL_SHIP_LENGTH
 from thalweg.planning.request.offing_choice import ship_dimensions
-from thalweg.planning.sea_distance import SMALL_CANALS
 from thalweg.ship import Ship
 
 
-def distance_options(ship: Ship, chart: Chart) -> dict[str, Any]:
+def distance_options(
+    ship: Ship, chart: Chart, small_canals: tuple[str, ...] = ()
+) -> dict[str, Any]:
     """Return the options of `thalweg.planning.sea_distance` for a ship, as plans choose them.
 
     Parameters
     ----------
     ship : Dimensions that are not known are not checked.
     chart : Its canals and passages.
+    small_canals : Those that a ship of unknown length does not use.
 
     Returns
     -------
@@ -32,7 +34,7 @@ def distance_options(ship: Ship, chart: Chart) -> dict[str, Any]:
     length = sizes["length"]
     small = length is not None and length < SMALL_SHIP_LENGTH
     if length is None:
-        closed += [name for name in SMALL_CANALS if name not in closed]
+        closed += [name for name in small_canals if name not in closed]
     return {
         "draught_m": sizes["draught"],
         "avoid": tuple(closed),
