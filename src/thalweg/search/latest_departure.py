@@ -81,23 +81,28 @@ def latest_departure(
 
 
 def departures_without_waits(
-    ship_on_network: ShipOnNetwork, query: ArrivalQuery, arrive_by: float
+    ship_on_network: ShipOnNetwork,
+    query: ArrivalQuery,
+    arrive_by: float,
+    most: int = _MOST_DEPARTURES,
 ) -> list[SearchResult]:
-    """Find the paths of least time without waits, of departures an hour apart.
+    """Find the paths of least time without waits, of departures an hour apart or more.
 
     Parameters
     ----------
     ship_on_network, query : As of `latest_departure`.
     arrive_by : float
         Latest arrival [s since 1970-01-01T00:00Z].
+    most : int
+        Most departures that are searched.
 
     Returns
     -------
     list of SearchResult
-        Those that arrive by the time, at most 60: the earliest arrival first, of arrivals within
+        Those that arrive by the time: the earliest arrival first, of arrivals within
         half an hour the shortest time under way.
     """
-    step = max(_DEPARTURE_STEP, (arrive_by - query.depart) / _MOST_DEPARTURES)
+    step = max(_DEPARTURE_STEP, (arrive_by - query.depart) / most)
     found = []
     for depart in np.arange(query.depart, arrive_by, step).tolist():
         one = replace(query, depart=depart, wait=False, arrive_by=arrive_by)

@@ -21,6 +21,7 @@ from thalweg.planning.pareto.trade_off_context import (
     TradeOffContext,
     spread_settings,
 )
+from thalweg.planning.pareto.waiting.waits_in_shelter import is_sheltered
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import LEAST_WAIT_H
 from thalweg.planning.single.route_candidates import track_from_result
@@ -31,6 +32,7 @@ from thalweg.search.latest_departure import departures_without_waits, latest_dep
 
 _MOST_SETTINGS: Final = 8
 _EDGES: Final = 60  # of a line
+_MOST_DEPARTURES: Final = 30  # at each speed
 _LONG_WAIT: Final = 1800.0  # of a path, for which later departures are tried [s]
 _LATER: Final = 30.0  # than the earliest arrival at a speed [s]
 _STEP, _STEPS = 3600.0, 12  # of later arrivals [s]: half a day, as tides
@@ -47,7 +49,7 @@ def one_wait_candidates(
     Parameters
     ----------
     explored : Alternatives; on the lines of the fastest routes that wait, and on the networks of
-        those where paths wait under way for weather.
+        those where paths wait under way in weather above the limits.
     """
     context = trade_off.context
     if not (context.voyage.wait and trade_off.is_refined) or len(trade_off.settings) < 2:
@@ -56,7 +58,7 @@ def one_wait_candidates(
     for one in explored:
         if trade_off.interrupt_guard.stopped():
             break
-        if _waits_for_weather(context, one):
+        if _waits_in_weather(context, one):
             found += _leaving_later(trade_off, one)
         if not one.fastest.feasible or one.fastest.waiting_h <= LEAST_WAIT_H:
             continue
@@ -70,16 +72,18 @@ def one_wait_candidates(
     return found
 
 
-def _waits_for_weather(context: PlanningContext, one: ExploredAlternative) -> bool:
-    """Return whether paths of the front wait under way, where limits of waves or wind may be."""
-    limits = context.ship.limits
-    if math.isinf(limits.wave_height) and math.isinf(limits.wind_speed):
-        return False
-    points = one.exact.points if one.exact else ()
-    return any(
-        np.max(point.path_depart[1:-1] - point.path_arrive[1:-1], initial=0.0) > _LONG_WAIT
-        for point in points
-    )
+def _waits_in_weather(context: PlanningContext, one: ExploredAlternative) -> bool:
+    """Return whether paths of the front wait under way in weather above the limits, or unknown."""
+    points = one.exact.points if one.exact and not context.sea.members else ()
+    rows = [np.zeros((0, 3))]
+    for point in points:
+        lasting = (point.path_depart - point.path_arrive)[1:-1]
+        long = np.flatnonzero(lasting > _LONG_WAIT) + 1
+        rows.append(np.stack([point.path[long], point.path_arrive[long], lasting[long - 1]], -1))
+    node, begin, lasting = np.unique(np.concatenate(rows), axis=0).T
+    network, node = one.alternative.network, node.astype(np.int64)
+    sheltered = is_sheltered(context, network.lat[node], network.lon[node], begin, lasting)
+    return not bool(sheltered.all())
 
 
 def _leaving_later(trade_off: TradeOffContext, one: ExploredAlternative) -> list[TrackCandidate]:
@@ -91,7 +95,7 @@ def _leaving_later(trade_off: TradeOffContext, one: ExploredAlternative) -> list
     found = []
     for setting in spread_settings(trade_off.settings, _MOST_SETTINGS).tolist():
         ship = ship_on_network(trade_off, network, one.frozen, setting)
-        results = departures_without_waits(ship, query, last)
+        results = departures_without_waits(ship, query, last, _MOST_DEPARTURES)
         chosen = [*results[:1], *sorted(results[1:], key=lambda result: result.duration)[:1]]
         tracks = [_from_berth(network, result, setting, depart) for result in chosen]
         found += [

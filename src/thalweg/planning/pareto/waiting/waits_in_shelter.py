@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.trade_off_context import WORTH_OF_SHELTER
-from thalweg.planning.pareto.waiting.wait_screening import ScreenedWaits, WaitScreen
+from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.route import Route, Track
@@ -60,7 +60,10 @@ def with_waits_in_shelter(
     place = np.array([place for place in places for _ in _waits_at(track, place)])
     found = screen.screened(track, waits)
     may_keep = found.may_keep & (found.arrive[:, len(track) - 1] <= latest + HOUR)
-    may_keep &= _in_shelter(context, track, waits, place, found)
+    rows = np.arange(len(waits))
+    begin, lasting = found.arrive[rows, place], waits[rows, place]
+    sheltered = is_sheltered(context, track.lat[place], track.lon[place], begin, lasting)
+    may_keep &= sheltered | (place == 0) | (lasting <= 0.0)
     rows = np.flatnonzero(may_keep)
     for row in _chosen(rows[np.argsort(found.cost[rows], kind="stable")], waits):
         tried = score(track.replaced(wait=waits[row]))
@@ -104,25 +107,29 @@ def _chosen(rows: NDArray[np.int64], waits: FloatArray) -> list[int]:
     return chosen[:_MOST_EVALUATED]
 
 
-def _in_shelter(
+def is_sheltered(
     context: PlanningContext,
-    track: Track,
-    waits: FloatArray,
-    place: np.ndarray,
-    found: ScreenedWaits,
+    lat: FloatArray,
+    lon: FloatArray,
+    begin: FloatArray,
+    lasting: FloatArray,
 ) -> BoolArray:
-    """Return which waits are in known waves and wind within the limits of the ship."""
+    """Return which waits are in known waves and wind within the limits of the ship.
+
+    Parameters
+    ----------
+    lat, lon : Positions [deg].
+    begin, lasting : Begin of each wait [s since 1970-01-01T00:00Z] and its length [s].
+    """
     sea, limits = context.sea, context.ship.limits
-    rows = np.arange(len(waits))
-    begin, lasting = found.arrive[rows, place], waits[rows, place]
     time = begin[:, None] + lasting[:, None] * np.linspace(0.0, 1.0, _SAMPLES)
-    lat, lon = track.lat[place][:, None], track.lon[place][:, None]
-    sheltered = np.ones(len(waits), bool)
+    place = lat[:, None], lon[:, None]
+    sheltered = np.ones(len(lat), bool)
     if math.isfinite(limits.wave_height) and sea.provides(WAVE_HEIGHT):
-        height = sea.sample([WAVE_HEIGHT], time, lat, lon)[WAVE_HEIGHT]
+        height = sea.sample([WAVE_HEIGHT], time, *place)[WAVE_HEIGHT]
         sheltered &= (height <= limits.wave_height).all(axis=1)
     if math.isfinite(limits.wind_speed) and sea.provides(EASTWARD_WIND):
-        wind = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], time, lat, lon)
+        wind = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], time, *place)
         speed = np.hypot(wind[EASTWARD_WIND], wind[NORTHWARD_WIND])
         sheltered &= (speed <= limits.wind_speed).all(axis=1)
-    return sheltered | (place == 0) | (lasting <= 0.0)
+    return sheltered
