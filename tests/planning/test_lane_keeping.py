@@ -55,13 +55,11 @@ def test_a_track_against_the_traffic_is_led_by_the_other_lane(chart, eastwards):
     assert found.lengths.sum() < 1.03 * wrong.lengths.sum()
 
 
-def test_a_track_in_its_lane_held_positions_and_waits_stay(chart):
+def test_a_track_in_its_lane_and_waits_stay(chart):
     side = GIBRALTAR.zone + 0.5 * GIBRALTAR.lane
     tracks = [wrong_side(WEST, EAST, metres) for metres in (side, -side)]
     right, wrong = sorted(tracks, key=lambda one: against_nm(chart, one))
     assert in_lanes_of_traffic(right, chart) is right
-    held = [(float(a), float(o)) for a, o in zip(wrong.lat[1:-1], wrong.lon[1:-1])]
-    assert in_lanes_of_traffic(wrong, chart, held) is wrong
     waits = wrong.replaced(wait=np.where(np.arange(len(wrong)) < len(wrong) - 1, 60.0, 0.0))
     assert in_lanes_of_traffic(waits, chart) is waits
     free = world_chart()

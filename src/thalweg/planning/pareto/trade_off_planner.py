@@ -42,7 +42,7 @@ from thalweg.planning.pareto.trade_off_context import (
     non_dominated_candidates,
     scored_candidate,
 )
-from thalweg.planning.pareto.turn_reduction import scored_with_fewer_turns
+from thalweg.planning.pareto.turn_reduction import may_leave_nodes, scored_with_fewer_turns
 from thalweg.planning.pareto.waiting.one_wait_candidates import one_wait_candidates
 from thalweg.planning.pareto.waiting.two_speeds_after_wait import two_speeds_after_wait
 from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
@@ -260,14 +260,15 @@ def _refereed(
     context.report_progress(f"evaluating {len(candidates)} routes")
     by_index: dict[int, RefereedCandidate] = {}
     until, screen = math.inf, None
-    held = [(end.lat, end.lon) for end in trade_off.via]
     for k in _from_coarse_to_fine(len(candidates)):
         if trade_off.interrupt_guard.stopped():
             until = min(until, monotonic() + _SECONDS_INTERRUPTED)
             if monotonic() > until and any(item.route.feasible for item in by_index.values()):
                 break
         candidate = candidates[k]
-        track = in_lanes_of_traffic(candidate.track, context.chart, held)
+        track = candidate.track
+        if may_leave_nodes(trade_off):
+            track = in_lanes_of_traffic(track, context.chart)
         route = scored_with_fewer_turns(trade_off, track, candidate.time)
         if not route.feasible and context.voyage.wait:
             screen = screen or WaitScreen(evaluator_around_candidates(trade_off, candidates))

@@ -14,6 +14,7 @@ from thalweg.chart.zones.traffic_schemes import INSHORE, TRAFFIC_SCHEMES, Traffi
 from thalweg.core.geodesy import Position, distance, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.route import Route, Track
 from thalweg.route.refinement.better_route import comparison_key
@@ -24,23 +25,24 @@ _SHARES: Final = (0.5, 0.3, 0.75)  # of the width of the lane, from the separati
 _EARLIER: Final = (0, 1, 2, 3)  # waypoints before and after the stretch from which she may go by
 
 
-def by_lanes_of_traffic(context: PlanningContext, route: Route) -> Route:
+def by_lanes_of_traffic(context: PlanningContext, network: Network, route: Route) -> Route:
     """Return a route in the lanes of the schemes where that is better, as the referee judges it.
 
     Parameters
     ----------
+    network : Of the route; one of a given shape keeps its nodes.
     route : As evaluated; where it is not feasible it stays.
     """
-    track = in_lanes_of_traffic(route.track, context.chart) if route.feasible else route.track
+    if not route.feasible or network.meta.kind == "layered":
+        return route
+    track = in_lanes_of_traffic(route.track, context.chart)
     if track is route.track:
         return route
     key = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
     return min((route, context.evaluate(track)), key=key)
 
 
-def in_lanes_of_traffic(
-    track: Track, chart: Chart, held: Sequence[Position] = (), *, least: float = _LEAST
-) -> Track:
+def in_lanes_of_traffic(track: Track, chart: Chart) -> Track:
     """Return a track that goes by the middle of the lanes where it ran against the traffic.
 
     A network with long edges may have none in the lane of a strait. Each scheme of the package is
@@ -51,51 +53,51 @@ def in_lanes_of_traffic(
     ----------
     track : Its settings stay; of the new legs the ship has that of the leg before.
     chart : Its lanes.
-    held : Positions that stay.
-    least : Shorter stretches against the traffic stay [m].
     """
-    if not chart.zones.lanes:
-        return track
-    for scheme in TRAFFIC_SCHEMES:
-        track = _by_lane(track, chart, scheme, held, least)
+    for scheme in TRAFFIC_SCHEMES if chart.zones.lanes else ():
+        stretch = _against(chart, track).get(scheme.name)
+        if stretch is not None:
+            track = _by_lane(track, chart, scheme, *stretch)
     return track
 
 
-def _by_lane(
-    track: Track, chart: Chart, scheme: TrafficScheme, held: Sequence[Position], least: float
-) -> Track:
-    """Return the track by the lane of one scheme; the given one where that is no better."""
+def _against(chart: Chart, track: Track) -> dict[str, tuple[int, int]]:
+    """Return the first and the last waypoint of the stretch of a track against each scheme."""
     legs = _legs(track.lat, track.lon)
-    length = np.asarray(distance(*legs))
-    group = chart.zones.lane_group
-    against = np.zeros(len(length))
+    length, group = np.asarray(distance(*legs)), chart.zones.lane_group
+    found: dict[str, list[tuple[int, float]]] = {}
     for leg, lane, share in zip(*group.shares_against(*legs), strict=True):
         name, _, part = group.lanes[lane].name.partition(", ")
-        if name == scheme.name and part != INSHORE:
-            against[leg] += share * length[leg]
-    wrong = np.flatnonzero(against)
-    if not wrong.size or against.sum() < least:
-        return track
-    first, last = int(wrong[0]), int(wrong[-1]) + 1
+        if part != INSHORE:
+            found.setdefault(name, []).append((int(leg), float(share * length[leg])))
+    return {
+        name: (min(legs)[0], max(legs)[0] + 1)
+        for name, legs in found.items()
+        if sum(metres for _, metres in legs) >= _LEAST
+    }
+
+
+def _by_lane(track: Track, chart: Chart, scheme: TrafficScheme, first: int, last: int) -> Track:
+    """Return the track by the lane of a scheme between two waypoints, or the given one."""
     best, most = track, 1.0  # metre
     for before, after in product(_EARLIER, _EARLIER):
         begin, end = first - before, last + after
-        if begin < 0 or end >= len(track) or not _may_replace(track, chart, held, begin, end):
+        if begin < 0 or end >= len(track) or not _may_replace(track, chart, begin, end):
             continue
         own = slice(begin, end + 1)
-        cost = _penalised(chart, track.lat[own], track.lon[own])
+        cost, length = (
+            measure(chart, track.lat[own], track.lon[own]) for measure in (_penalised, _length)
+        )
         ends = [(float(track.lat[i]), float(track.lon[i])) for i in (begin, end)]
         for places in _lane_between(scheme, *ends):
-            tried = _with_places(track, begin, end, places)
-            part = slice(begin, begin + len(places) + 2)
-            lat, lon = tried.lat[part], tried.lon[part]
+            lat, lon = np.array([ends[0], *places, ends[1]]).T
             if np.any(chart.legs_blocked(*_legs(lat, lon))):
                 continue
-            if _length(lat, lon) > _MOST_LONGER * _length(track.lat[own], track.lon[own]) + _LEAST:
+            if _length(chart, lat, lon) > _MOST_LONGER * length + _LEAST:
                 continue
             gain = cost - _penalised(chart, lat, lon)
             if gain > most:
-                best, most = tried, gain
+                best, most = _with_places(track, begin, end, places), gain
     return best
 
 
@@ -124,21 +126,12 @@ def _along(scheme: TrafficScheme, place: Position) -> float:
     return float(off @ chord) / float(np.linalg.norm(chord))
 
 
-def _may_replace(
-    track: Track, chart: Chart, held: Sequence[Position], begin: int, end: int
-) -> bool:
-    """Return whether the waypoints between two may go: no waits, held positions or canals."""
-    inside = slice(begin + 1, end)
-    if np.any(np.asarray(track.wait)[inside]):
+def _may_replace(track: Track, chart: Chart, begin: int, end: int) -> bool:
+    """Return whether the waypoints between two may go: no waits and no canals."""
+    if np.any(np.asarray(track.wait)[begin + 1 : end]):
         return False
-    for lat, lon in held:
-        off = np.abs(track.lat[inside] - lat) + np.abs(wrap_longitude(track.lon[inside] - lon))
-        if np.any(off < 1e-9):
-            return False
-    part = slice(begin, end + 1)
-    return not np.any(
-        np.asarray(chart.canal_of_legs(*_legs(track.lat[part], track.lon[part]))) >= 0
-    )
+    legs = _legs(track.lat[begin : end + 1], track.lon[begin : end + 1])
+    return not np.any(np.asarray(chart.canal_of_legs(*legs)) >= 0)
 
 
 def _with_places(track: Track, begin: int, end: int, places: Sequence[Position]) -> Track:
@@ -155,7 +148,7 @@ def _with_places(track: Track, begin: int, end: int, places: Sequence[Position])
     return Track(joined[0], joined[1], track.depart, joined[2], setting)
 
 
-def _length(lat: FloatArray, lon: FloatArray) -> float:
+def _length(chart: Chart, lat: FloatArray, lon: FloatArray) -> float:
     return float(np.sum(np.asarray(distance(*_legs(lat, lon)))))
 
 

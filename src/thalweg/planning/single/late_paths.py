@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from thalweg.planning.planning_context import PlanningContext
-from thalweg.route import Route
+from thalweg.route import Route, Track
 from thalweg.search import SearchResult, ShipOnNetwork
 from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.latest_departure import departures_without_waits, latest_departure
@@ -46,6 +46,13 @@ class LatePaths:
         return departures_without_waits(self.ship, self.query, arrive_by)
 
 
+def waiting_at_berth(track: Track, depart: float) -> Track:
+    """Return a track that waits at its first waypoint since a departure [s since 1970]."""
+    wait = np.array(track.wait, float)
+    wait[0] += track.depart - depart
+    return track.replaced(depart=depart, wait=wait)
+
+
 def after_wait_at_berth(
     context: PlanningContext, late: Route, route: Route, last_departure: float
 ) -> Route:
@@ -57,8 +64,5 @@ def after_wait_at_berth(
     route : The other one.
     last_departure : The ship waits from then on, at the latest [s since 1970-01-01T00:00Z].
     """
-    track = late.track
-    depart = min(max(route.depart, last_departure), track.depart)
-    wait = np.array(track.wait, float)
-    wait[0] += track.depart - depart
-    return context.evaluate(track.replaced(depart=depart, wait=wait))
+    depart = min(max(route.depart, last_departure), late.track.depart)
+    return context.evaluate(waiting_at_berth(late.track, depart))

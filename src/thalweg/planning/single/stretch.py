@@ -196,7 +196,7 @@ def _search_and_refine(
             route = through_narrow_features(context, route, limits)
             found = partial(_route_on_network, context, limits, window, ends)
             route = along_way_of_seas(context, ends, route, found, limits)
-            route = by_lanes_of_traffic(context, route)
+    route = by_lanes_of_traffic(context, network, route)
     paths = _late_paths(context, network, frozen, limits, (result, route))
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
@@ -234,7 +234,8 @@ def _late_paths(
     query = ArrivalQuery(*ends, route.depart, wait=context.voyage.wait)
 
     def refine(late: SearchResult) -> Route:
-        return refine_track(context, track_from_result(network, late, context.setting), limits)
+        track = track_from_result(network, late, context.setting)
+        return by_lanes_of_traffic(context, network, refine_track(context, track, limits))
 
     def sail(late: SearchResult) -> Route:
         return context.evaluate(track_from_result(network, late, context.setting))

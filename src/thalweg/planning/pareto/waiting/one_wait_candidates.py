@@ -24,6 +24,7 @@ from thalweg.planning.pareto.trade_off_context import (
 from thalweg.planning.pareto.waiting.waits_in_shelter import is_sheltered
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import LEAST_WAIT_H
+from thalweg.planning.single.late_paths import waiting_at_berth
 from thalweg.planning.single.route_candidates import track_from_result
 from thalweg.route import Route, Track
 from thalweg.search import SearchResult
@@ -96,21 +97,25 @@ def _leaving_later(trade_off: TradeOffContext, one: ExploredAlternative) -> list
     for setting in spread_settings(trade_off.settings, _MOST_SETTINGS).tolist():
         ship = ship_on_network(trade_off, network, one.frozen, setting)
         results = departures_without_waits(ship, query, last, _MOST_DEPARTURES)
-        chosen = [*results[:1], *sorted(results[1:], key=lambda result: result.duration)[:1]]
-        tracks = [_from_berth(network, result, setting, depart) for result in chosen]
+        tracks = [
+            track_from_result(network, result, setting) for result in _first_and_shortest(results)
+        ]
         found += [
-            TrackCandidate(track, "one wait", one.alternative.name, math.nan, math.nan)
+            TrackCandidate(
+                waiting_at_berth(track, depart),
+                "one wait",
+                one.alternative.name,
+                math.nan,
+                math.nan,
+            )
             for track in tracks
         ]
     return found
 
 
-def _from_berth(network: Network, result: SearchResult, setting: int, depart: float) -> Track:
-    """Return the track of a path with the wait at the berth since a departure [s]."""
-    track = track_from_result(network, result, setting)
-    wait = np.array(track.wait, float)
-    wait[0] += track.depart - depart
-    return track.replaced(depart=depart, wait=wait)
+def _first_and_shortest(results: list[SearchResult]) -> list[SearchResult]:
+    """Return the first of some results, and that with the shortest time of the others."""
+    return [*results[:1], *sorted(results[1:], key=lambda result: result.duration)[:1]]
 
 
 def _network_of(trade_off: TradeOffContext, route: Route) -> Network:
@@ -145,6 +150,7 @@ def _waiting_once(
     if shortest.duration - shortest.waiting < found[0].duration - found[0].waiting - _LATER:
         chosen.append(shortest)
     if any(result.waiting > _LATER for result in chosen):  # at sea, perhaps above her limits
-        without = departures_without_waits(ship, query, last)
-        chosen += [*without[:1], *sorted(without[1:], key=lambda one: one.duration)[:1]]
-    return [_from_berth(network, result, setting, depart) for result in chosen]
+        chosen += _first_and_shortest(departures_without_waits(ship, query, last))
+    return [
+        waiting_at_berth(track_from_result(network, result, setting), depart) for result in chosen
+    ]
