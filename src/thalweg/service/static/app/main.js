@@ -222,7 +222,11 @@ class Application {
         this.#leaveProgress();
         await this.#ended(done);
       },
-      route: (points) => { if (this.view === "plan" && this.progress === shown) { this.chart.routes.showChosen(points, null, null, 0); this.chart.fitOutside(points.map(([lon, lat]) => ({ lon, lat }))); } },
+      route: (points) => {
+        if (this.view !== "plan" || this.progress !== shown) return;
+        this.chart.routes.showChosen(points, null, null, 0);
+        if (points) this.chart.fitOutside(points.map(([lon, lat]) => ({ lon, lat })));
+      },
       leave: () => { this.#leaveProgress(); this.#switch("voyages"); },
     });
     this.progress = shown;

@@ -12,6 +12,12 @@ export class LiveFront {
     this.element = this.holder;
   }
 
+  clear() {
+    this.points = this.box = undefined;
+    this.holder.hidden = true;
+    fill(this.holder);
+  }
+
   // data: {points: [[hours, value]], unit}
   show({ points, unit }) {
     if (!points.length) return;

@@ -11,6 +11,8 @@ export function jobFoot(job, words, { state, problem, leave }) {
   return h("div.foot", {}, h("button.quiet", { type: "button", onclick: stop }, words), h("button.quiet", { type: "button", onclick: leave }, "Leave it running"));
 }
 
+const STOP = "Stop", STOP_AND_KEEP = "Stop, keep the best"; // the second where there is a route to keep
+
 export class ProgressView {
   constructor(job, handlers) {
     this.job = job;
@@ -20,7 +22,7 @@ export class ProgressView {
     this.state = h("p.lead", { role: "status" }, "Waiting for its turn.");
     this.problem = h("div");
     this.front = new LiveFront();
-    this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, "Stop, keep the best");
+    this.cancel = h("button.quiet", { type: "button", onclick: () => this.stop() }, STOP);
     this.element = [h("div.scroll", {}, h("h1", {}, titleOf(job)), this.state, this.steps, this.best, this.front.element, this.problem), h("div.foot", {}, this.cancel, h("button.quiet", { type: "button", onclick: handlers.leave }, "Leave it running"))];
     this.close = follow(job.id, { state: (data) => this.#state(data), stage: (data) => this.#stage(data), route: (data) => this.#route(data), front: (data) => this.front.show(data), waiting: () => { this.state.textContent = "The service does not answer; the job goes on when it runs again."; }, open: () => this.#say() });
   }
@@ -32,7 +34,7 @@ export class ProgressView {
   #state(data) {
     this.now = data.state;
     if (data.state === "queued" && data.why) {
-      fill(this.steps);
+      this.#forget();
       this.state.textContent = `Started again: ${data.why}.`;
       return;
     }
@@ -41,6 +43,15 @@ export class ProgressView {
     this.close();
     announce({ done: "The result is ready.", failed: "The job ended with an error.", cancelled: "The job was stopped." }[data.state] || `State of the job: ${data.state}.`);
     this.handlers.ended(data);
+  }
+
+  // A job that starts again has no route yet: what its first run found is gone.
+  #forget() {
+    fill(this.steps);
+    fill(this.best);
+    this.front.clear();
+    this.cancel.textContent = STOP;
+    this.handlers.route(null);
   }
 
   #stage(data) {
@@ -58,6 +69,7 @@ export class ProgressView {
   }
 
   #route({ route, final }) {
+    if (this.cancel.textContent === STOP) this.cancel.textContent = STOP_AND_KEEP;
     fill(this.best, h("h2.block", {}, final ? "Route found" : ["time", "distance"].includes(this.job.request.voyage?.objective || "time") ? "Best route so far" : "First route: the fastest"), h("dl.cards", {},
       h("div.card", {}, h("dt", {}, "Time"), h("dd", {}, durationParts(route.time_h))),
       h("div.card", {}, h("dt", {}, "Distance"), h("dd", {}, number(route.distance_nm, 1), unit("nm"))),
