@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _MOST_NODES: Final = 30_000
 _LEAST_NODES: Final = 4
+_FLAT: Final = 1e-12  # twice the area of a triangle without an inside [degrees squared]
 _LAT_MARGIN, _LON_MARGIN = 2.0, 4.0  # round the raster [deg]
 
 
@@ -64,8 +65,6 @@ def _interpolated(
     lon: FloatArray,
     unwrapped: Callable[[FloatArray], FloatArray],
 ) -> FloatArray | None:
-    from scipy.interpolate import LinearNDInterpolator
-
     node_lat, node_lon = context.lat[nodes], unwrapped(context.lon[nodes])
     arrival = context.arrival[nodes]
     use = np.isfinite(arrival)
@@ -76,4 +75,48 @@ def _interpolated(
         return None
     index = index[:: max(1, len(index) // _MOST_NODES)]
     places = np.column_stack([node_lon[index], node_lat[index]])
-    return np.asarray(LinearNDInterpolator(places, arrival[index])(lon, lat), float)
+    return interpolated_between(places, arrival[index], np.stack([lon, lat], axis=-1))
+
+
+def interpolated_between(places: FloatArray, values: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Interpolate linearly in the triangles between places of a plane.
+
+    SciPy's interpolation looks through all triangles for each point that it meets a flat one on
+    the way to, and lattices have many in a line: minutes for an ocean.
+
+    Parameters
+    ----------
+    places : float64 array, shape (places, 2)
+    values : float64 array, shape (places,)
+    wanted : float64 array, shape (..., 2)
+
+    Returns
+    -------
+    float64 array, shape (...)
+        NaN outside the hull of the places, everywhere where these are in a line.
+    """
+    import shapely
+    from scipy.spatial import Delaunay, QhullError
+
+    try:
+        triangles = Delaunay(places).simplices
+    except QhullError:  # all in a line
+        return np.full(wanted.shape[:-1], np.nan)
+    first, one, other = np.moveaxis(places[triangles], 1, 0)
+    one, other = one - first, other - first
+    twice_area = _cross(one, other)
+    wide = np.abs(twice_area) > _FLAT
+    triangles, first, one, other = triangles[wide], first[wide], one[wide], other[wide]
+    points = wanted.reshape(-1, 2)
+    tree = shapely.STRtree(shapely.polygons(places[triangles]))
+    point, triangle = tree.query(shapely.points(points), predicate="intersects")
+    off, one, other = points[point] - first[triangle], one[triangle], other[triangle]
+    share = np.column_stack([_cross(off, other), _cross(one, off)]) / _cross(one, other)[:, None]
+    corners = values[triangles[triangle]]
+    found = np.full(len(points), np.nan)
+    found[point] = corners[:, 0] + np.sum(share * (corners[:, 1:] - corners[:, :1]), axis=1)
+    return found.reshape(wanted.shape[:-1])
+
+
+def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
