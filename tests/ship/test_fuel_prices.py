@@ -84,6 +84,13 @@ def test_price_of_time_from_the_ship_file():
         terms_of({"costs": {"hire_per_day": 1.0, "per_week": 7.0}})
 
 
+def test_a_currency_is_a_code_of_three_letters():
+    assert terms_of({"fuel": {"price_per_t": 500.0, "currency": " eur"}}).currency == "EUR"
+    for wrong in ("bananas", "E1R", "", "€"):
+        with pytest.raises(ValueError, match=r"three letters|text"):
+            terms_of({"fuel": {"price_per_t": 500.0, "currency": wrong}})
+
+
 def test_one_currency():
     euros = {"fuel": {"price_per_t": 500.0, "currency": "EUR"}}
     assert terms_of(euros).currency == "EUR"

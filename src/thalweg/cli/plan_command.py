@@ -88,7 +88,7 @@ def _add_time_options(parser: argparse.ArgumentParser) -> None:
         "--depart-window",
         nargs=2,
         metavar=("FIRST", "LAST"),
-        help="find the best departure between two times (ISO 8601, UTC); "
+        help="find the departure of the shortest passage between two times (ISO 8601, UTC); "
         "for the objectives time and distance",
     )
     parser.add_argument("--arrive-by", metavar="TIME", help="latest arrival (ISO 8601, UTC)")

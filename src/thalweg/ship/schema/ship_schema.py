@@ -17,6 +17,7 @@ from thalweg.ship.schema.value_types import (
     AppendageCount,
     Coefficient,
     Consumption,
+    Currency,
     Draught,
     EngineLoad,
     Flag,
@@ -178,7 +179,7 @@ class FuelSection(Section):
     price_per_t: FuelPrice | None = None
     eca_price_per_t: FuelPrice | None = None
     eca_price_factor: Annotated[Number, Field(gt=0.0, le=100.0)] = 1.0
-    currency: Text | None = None
+    currency: Currency | None = None
 
 
 class LoadingSection(Section):
@@ -231,7 +232,7 @@ class CostsSection(Section):
     per_week: TimePrice | None = None
     per_second_per_cubed_speed: Annotated[Number, Field(ge=0.0, le=1e6)] | None = None
     co2_g_per_second_per_cubed_speed: Annotated[Number, Field(ge=0.0, le=1e6)] | None = None
-    currency: Text | None = None
+    currency: Currency | None = None
 
 
 class WaterSection(Section):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from numbers import Real
 from typing import Annotated, Any
 
@@ -76,6 +77,14 @@ def as_word(value: Any) -> str:
     return as_text(value).strip().casefold().replace("-", "_").replace(" ", "_")
 
 
+def as_currency(value: Any) -> str:
+    """Return the code of a currency, three capital letters (ISO 4217)."""
+    code = as_text(value).strip().upper()
+    if not re.fullmatch("[A-Z]{3}", code):
+        raise wrong_value("a code of three letters (ISO 4217), such as USD or EUR")
+    return code
+
+
 def as_stern_shape(value: Any) -> str | float:
     """Return the name of a stern shape, or Holtrop's coefficient C_stern (-25 to 10)."""
     if isinstance(value, str):
@@ -97,6 +106,7 @@ Text = Annotated[str, BeforeValidator(as_text)]
 Texts = Annotated[tuple[str, ...], BeforeValidator(as_texts)]
 Flag = Annotated[bool, BeforeValidator(as_flag)]
 Word = BeforeValidator(as_word)
+Currency = Annotated[str, BeforeValidator(as_currency)]
 OneOrMore = BeforeValidator(as_list)
 SternShape = Annotated[str | float, BeforeValidator(as_stern_shape)]
 
