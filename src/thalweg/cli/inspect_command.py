@@ -80,7 +80,7 @@ def _print_inspection(inspection: dict[str, Any]) -> None:
         print(f"  {row['source']}: {_extent_text(row)}{part}")
         for variable in row["variables"]:
             missing = inspection["missing_fraction"].get(f"{row['source']}: {variable}", 0.0)
-            share = f", no value at {100 * missing:.1f} % of the positions" if missing else ""
+            share = _missing_text(missing)
             pair = inspection["ranges"].get(f"{row['source']}: {variable}")
             values = f" {pair[0]:.4g} to {pair[1]:.4g}" if pair else ""
             print(f"    {variable}{values}{share}")
@@ -115,3 +115,9 @@ def _extent_text(row: dict[str, Any]) -> str:
     if row["spacing_deg"] is not None:
         parts.append(f"spacing {row['spacing_deg']:.3g} degrees")
     return ", ".join(parts)
+
+
+def _missing_text(share: float) -> str:
+    if share >= 1.0:
+        return ", EMPTY: no value at the positions and times that were read"
+    return f", no value at {100 * share:.1f} % of the positions" if share else ""
