@@ -82,7 +82,7 @@ def test_the_bound_of_a_cost_counts_the_dues_of_a_canal_or_the_way_round_it():
     start = (54.0, 5.0)  # from where the way round Skagen is not much longer
     voyage = {"start": start, "goal": GDANSK, "depart": "2026-01-01T00:00Z", "objective": "cost"}
     chart = Chart.gshhg("l")
-    given = {"ship": ship, "sea": Sea.calm(), "chart": chart, "resolution": 20_000.0}
+    given = {"ship": ship, "sea": Sea.calm(), "chart": chart, "resolution": 40_000.0}
     answer = plan(Voyage(**voyage, method="exact"), **given, proof=6.0)
     other = plan(Voyage(**voyage, method="exact", forbid=["kiel"]), **given, proof=0.0)
     assert "with the time, dues and fuel of canals, or the way round them" in answer.proof.kind

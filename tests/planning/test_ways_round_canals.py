@@ -31,7 +31,7 @@ def by_kiel():
     voyage = Voyage(start=(54.0, 8.0), goal=(54.5, 13.5), depart=DEPART)
     return alternative_plans(
         voyage, ship=Ship.load("handysize-bulker"), sea=Sea.calm(), chart=Chart.gshhg("l"),
-        resolution=15_000.0,
+        resolution=30_000.0,
     )  # fmt: skip
 
 
