@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ from thalweg.planning.report.lane_report import (
     AGAINST_TRAFFIC,
     INSHORE_USED,
     lane_detour_notes,
+    lane_notes,
     routes_within_lanes,
 )
 from thalweg.planning.request.lane_choice import add_traffic_schemes
@@ -253,3 +256,26 @@ def test_plans_in_a_strait_keep_its_separation_line_to_port_over_the_whole_width
     in_strait = np.isfinite(nearest) & (distances < 20.0 / 60.0)
     assert in_strait.sum() > 30
     assert starboard[in_strait].mean() > 0.95  # narrow bends of an approximate line are cut
+
+
+@pytest.mark.parametrize(("inside_m", "against"), [(-50.0, False), (50.0, False), (500.0, True)])
+def test_a_route_on_the_edge_of_a_lane_is_stated_the_same_after_rounding(inside_m, against):
+    """Least ways lie on the edge; files put them to one side of it or the other."""
+    chart = SimpleNamespace(zones=Zones(lanes=FINISTERRE.lanes))
+    edge = FINISTERRE.shifted(-(FINISTERRE.zone + 0.25 * FINISTERRE.lane) + inside_m)
+    lon, lat = edge[::-1].T  # south-bound, beside the lane of the north-bound
+    route = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
+    legs = lat[:-1], lon[:-1], lat[1:], lon[1:]
+    assert chart.zones.lane_group.shares_against(*legs)[0].any() == (inside_m > 0.0)
+    assert any("Runs against" in note for note in lane_notes(chart, route)) == against
+
+
+@pytest.mark.parametrize(("off", "against"), [(99.0, False), (101.0, False), (106.0, True)])
+def test_a_crossing_is_stated_the_same_after_rounding(off, against):
+    lane = replace(FINISTERRE.lanes[0], direction=0.0)
+    chart = SimpleNamespace(zones=Zones(lanes=(lane,)))
+    (x, y), course = lane.shape.centroid.coords[0], math.radians(off)
+    dy, dx = 0.1 * math.cos(course), 0.1 * math.sin(course) / math.cos(math.radians(y))
+    lat, lon = np.array([y - dy, y + dy]), np.array([x - dx, x + dx])
+    route = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
+    assert any("Runs against" in note for note in lane_notes(chart, route)) == against

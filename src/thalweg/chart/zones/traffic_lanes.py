@@ -8,7 +8,7 @@ ships free to cross a lane at right angles (Rule 10 (c) of the Collision Regulat
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -32,6 +32,8 @@ _TURNS: Final = (-360.0, 0.0, 360.0)  # of longitude, with which areas are in th
 _MOST_CORNERS: Final = 6  # of areas that are cut without a library
 _FAR_ACROSS: Final = 120.0  # legs over more longitude than this [deg] may meet any lane
 _ROUNDING: Final = 1e-6  # [deg]
+_EDGE: Final = 0.1 / 60.0  # width of the strip along the edge of a lane [deg]
+_MORE_COURSES: Final = 3.0  # beyond the tolerance of a lane [deg]
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +130,25 @@ class LaneGroup:
         shapes = [shapely.affinity.translate(lane.shape, turn) for lane in lanes for turn in _TURNS]
         shapely.prepare(shapes)
         return cls(tuple(lanes), shapely.STRtree(shapes), _cells_of_lanes(lanes))
+
+    @cached_property
+    def without_edges(self) -> LaneGroup:
+        """The lanes less a strip along their edges, and with more courses along them.
+
+        For what is stated of a route: least ways follow the edge of a lane, or cross it at the
+        last course that is not against it, and the rounding and thinning of a file then puts them
+        to one side or the other.
+        """
+        return LaneGroup.of(
+            [
+                replace(
+                    lane,
+                    shape=_inside_of(lane.shape),
+                    tolerance=lane.tolerance + (_MORE_COURSES if lane.tolerance > 0.0 else 0.0),
+                )
+                for lane in self.lanes
+            ]
+        )
 
     def shares_against(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
@@ -269,6 +290,12 @@ class LaneGroup:
         count = sums[high + 1, right + 1] - sums[low, right + 1]
         count -= sums[high + 1, left] - sums[low, left]
         return np.asarray((count > 0) | (np.abs(turn) > _FAR_ACROSS))
+
+
+def _inside_of(shape: Any) -> Any:
+    """Return an area less the strip along its edge, or the area if that is all of it."""
+    inside = shape.buffer(-_EDGE, join_style="mitre")
+    return shape if inside.is_empty else inside
 
 
 def _shares_in_convex(corners: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray:

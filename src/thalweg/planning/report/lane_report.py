@@ -185,8 +185,11 @@ def _legs(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, ...]:
 def _metres(
     chart: Chart, legs: tuple[FloatArray, ...], *, inshore: bool = False
 ) -> dict[str, float]:
-    """Return the distance [m] that legs run against each scheme, or in its inshore zones."""
-    group = chart.zones.lane_group
+    """Return the distance [m] that legs run against each scheme, or in its inshore zones.
+
+    The last 0.1 nm of each area do not count: routes are led along the edges of lanes.
+    """
+    group = chart.zones.lane_group.without_edges
     length = np.asarray(distance(*legs))
     found: dict[str, float] = {}
     for leg, lane, share in zip(*group.shares_against(*legs)):
