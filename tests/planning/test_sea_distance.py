@@ -37,6 +37,32 @@ def test_published_distances(start, goal, miles):
     assert sea_distance(start, goal).nm == pytest.approx(miles, rel=0.015)
 
 
+@pytest.mark.slow
+def test_the_way_by_another_strait_is_pulled_off_shoals_too():
+    """Reefs beside the way by Yucatan were left by the Windward Passage, 38 nm longer."""
+    found = sea_distance("Miami", "Colon")
+    assert "Yucatan" in found.straits and found.nm == pytest.approx(1_185.0, abs=5.0)
+
+
+def test_a_passage_that_is_opened_is_used_in_spite_of_the_draught():
+    ports = "Gothenburg", "Gdynia"
+    closed = sea_distance(*ports, draught_m=9.0)
+    found = sea_distance(*ports, draught_m=9.0, open=["Oresund"])
+    assert "Oresund" not in closed.straits and "Oresund" in found.straits
+    assert found.nm < closed.nm - 80.0
+
+
+def test_a_passage_to_avoid_that_an_approach_leads_through_is_named():
+    (note,) = [
+        note
+        for note in sea_distance("Halifax", "New York", avoid=["Verrazano Narrows"]).notes
+        if note.startswith("Not avoided")
+    ]
+    assert "Verrazano Narrows: the approach" in note
+    free = sea_distance("Halifax", "New York").notes
+    assert not any(note.startswith("Not avoided") for note in free)
+
+
 @pytest.mark.parametrize("ports", [("Santos", "Durban"), ("FRBON", "ITSAT"), ("IERAT", "GBBDF")])
 def test_the_same_distance_both_ways(ports):
     there, back = sea_distance(*ports), sea_distance(*ports[::-1])

@@ -47,7 +47,8 @@ def add_command(commands: Any) -> None:
         default=[],
         metavar="NAME",
         help="passage for small or local ships that may be used, for example Canso; all: all of "
-        "them, for a ship shorter than 120 m; may be repeated",
+        "them, for a ship shorter than 120 m; another passage is used in spite of --draught and "
+        "the size of --ship; may be repeated",
     )
     parser.add_argument(
         "--offing",
@@ -81,19 +82,23 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.chart.ports import place_positions
 
     place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
+    from thalweg.chart.passages import find_passages
+    from thalweg.planning.network_selection.seas_of_distance import USUAL_DEPTH
     from thalweg.planning.sea_distance import (
         SMALL_CANALS,
-        USUAL_DEPTH,
         sea_distance,
         small_ship_distance,
     )
 
     of_ship = _options_of_ship(arguments.ship)
-    avoid: tuple[str, ...] = of_ship.get("avoid", SMALL_CANALS)
+    names = [name for name in arguments.open if name.strip().casefold() != "all"]
+    in_spite = {one.name for one in find_passages(names)}  # of the size of the ship
+    of_ship["avoid"] = tuple(n for n in of_ship.get("avoid", SMALL_CANALS) if n not in in_spite)
+    avoid: tuple[str, ...] = of_ship["avoid"]
     if arguments.avoid is not None:
         names = [name for text in arguments.avoid for name in names_in_list(text)]
         wanted = tuple(name for name in names if name != "none")
-        avoid = (*wanted, *of_ship.get("avoid", ()))
+        avoid = (*wanted, *(of_ship["avoid"] if arguments.ship else ()))
     arguments.progress("finding the shortest way")
     ends = arguments.start, arguments.goal
     draught = of_ship.get("draught_m") if arguments.draught is None else arguments.draught

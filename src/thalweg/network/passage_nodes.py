@@ -40,6 +40,10 @@ class PassageNodes(NamedTuple):
         joined = self.joined & np.append(False, keep[:-1])
         return PassageNodes(self.lat[keep], self.lon[keep], joined[keep])
 
+    def followed_by(self, others: PassageNodes) -> PassageNodes:
+        """Return these positions and then others."""
+        return PassageNodes(*(np.concatenate(pair) for pair in zip(self, others)))
+
 
 def passage_nodes(chart: Chart) -> PassageNodes:
     """Return positions along the passages of a chart that are not much wider than its offing."""

@@ -14,17 +14,15 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
-from thalweg.chart.depth.shoals import DRAUGHTS, Shoals
-from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
-from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.closed_to_draught import closed_to_draught_notes
 from thalweg.planning.network_selection.closed_ways import closed_way_error
+from thalweg.planning.network_selection.seas_of_distance import opened_names, seas_and_every
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
 from thalweg.planning.report.approach_report import (
@@ -33,7 +31,7 @@ from thalweg.planning.report.approach_report import (
     unknown_depth_text,
 )
 from thalweg.planning.report.distance_report import (
-    LEAST_DEPTH,
+    avoided_on_approach_notes,
     roundabout_notes,
     shoal_detour_notes,
     shoal_notes,
@@ -57,8 +55,6 @@ _LEAST_OVER_GRAPH: Final = 0.02  # the same for ways over the graph, which are n
 _SHORT_WAY: Final = 500.0 * NAUTICAL_MILE  # small passages may shorten it wherever they are
 _NEAR_END: Final = 150.0 * NAUTICAL_MILE  # else they are so near an end ...
 _NEAR_DIRECT: Final = 1.02  # ... or their detour from the direct line is at most this
-#: Ways without a draught keep off water shallower than this where they can [m].
-USUAL_DEPTH: Final = 5.0
 
 
 @dataclass(frozen=True)
@@ -174,6 +170,7 @@ def sea_distance(
         every canal.
     open : sequence of str
         Passages for small or local ships that may be used, such as "Canso"; "all" for all of them.
+        Others are used in spite of the draught.
     offing_nm : float
         Distance from land [nm] that the way keeps outside passages, ends and canals, 0 to 50;
         less only where the graph has no water so far from land.
@@ -208,7 +205,7 @@ def sea_distance(
     check_offing(offing_nm)
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     ends = resolve_places(start, via, goal, chart)
-    opened = _opened(chart, open)
+    opened = opened_names(chart, open)
     found = [_way_over_seas(chart, ends, closed, opened, offing_nm * NAUTICAL_MILE, draught_m)]
     if opened:  # never longer than without: the graph with these passages is another one
         with contextlib.suppress(NoRouteError):
@@ -227,7 +224,7 @@ def _way_over_seas(
     draught: float | None,
 ) -> SeaDistance:
     """Return the shortest way with some passages for small ships open; offing and draught [m]."""
-    seas, every = _seas_and_every(chart, ends, closed, opened, draught)
+    seas, every = seas_and_every(chart, ends, closed, opened, draught)
     try:
         way = way_over_seas(seas, ends, draught=draught, offing=offing)
     except NoRouteError as error:
@@ -261,6 +258,7 @@ def _way_over_seas(
         canals = path_length_and_canals(chart, way.at_sea)[1]
     lat, lon = np.array(way.line, float).T
     straits = names_passed(chart.coastline, chart.passages, lat, lon)
+    notes += avoided_on_approach_notes(every, straits, way.approaches)
     first, last = way.ends[0].approach, way.ends[-1].approach
     joints = [len(first.line) - 1] if first else []
     joints += [len(way.line) - len(last.line)] if last else []
@@ -269,20 +267,6 @@ def _way_over_seas(
     notes += () if shut else roundabout_notes(way.line, way.length)
     approaches = tuple((a.label, a.length) for a in way.approaches)
     return SeaDistance(*names, way.length, canals, straits, approaches, way.line, notes)
-
-
-def _seas_and_every(
-    chart: Chart,
-    ends: Sequence[Endpoint],
-    closed: Sequence[str],
-    opened: Sequence[str],
-    draught: float | None,
-) -> tuple[Seaways, Seaways]:
-    """Return the seaways for a draught [m], and those of which it closes nothing."""
-    every = Seaways.of_chart(chart, closed, opened=opened)
-    if draught is None:
-        return replace(every, shoals=_usual_shoals(chart, ends)), every
-    return _seas_for_draught(every, draught, ends), every
 
 
 def _detours(seas: Seaways, way: WayOverSeas, offing: float) -> tuple[str, ...]:
@@ -328,8 +312,8 @@ def small_ship_distance(
         return None
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     ends = resolve_places(start, (), goal, chart)
-    opened = _opened(chart, ("all",))
-    usual, more = (_seas_and_every(chart, ends, closed, o, draught_m)[0] for o in ((), opened))
+    opened = opened_names(chart, ("all",))
+    usual, more = (seas_and_every(chart, ends, closed, o, draught_m)[0] for o in ((), opened))
     over_graph = partial(way_over_seas, ends=ends, draught=draught_m, offing=None)
     if over_graph(more).length > (1.0 - _LEAST_OVER_GRAPH) * over_graph(usual).length:
         return None
@@ -355,14 +339,6 @@ def _may_be_shorter(way: SeaDistance, chart: Chart) -> bool:
     return False
 
 
-def _opened(chart: Chart, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of passages to open; "all" stands for all that are for small ships."""
-    given = (names,) if isinstance(names, str) else tuple(names)
-    if not any(name.strip().casefold() == "all" for name in given):
-        return given
-    return tuple(sorted(small_passages(chart)))
-
-
 def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:
     """Return the titles of the canals of a whole way, with those that are entered on the way."""
     lat, lon = np.array(line, float).T
@@ -370,30 +346,3 @@ def _canals_entered(chart: Chart, line: Sequence[Position]) -> tuple[str, ...]:
     whole = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     number = np.where(first_legs_of_transits(part), part, whole)
     return tuple(chart.canals[k].title for k in number[number >= 0].tolist())
-
-
-def _seas_for_draught(seas: Seaways, draught: float, ends: Sequence[Endpoint]) -> Seaways:
-    """Return the seaways for a draught [m]: what plans close and where a mile counts more."""
-    if not (is_number(draught) and 0.0 < draught <= DEEPEST_DRAUGHT):
-        raise InputError(
-            f"The draught is {shortened_repr(draught)} m.",
-            f"Draughts are above 0 and at most {DEEPEST_DRAUGHT:g} m.",
-            "Correct it, or leave it out.",
-            field="draught_m",
-        )
-    for canal in seas.chart.canals:
-        if canal.name not in seas.canals and canal.transit_restriction(draught=draught, beam=None):
-            seas = seas.without(canal.name)
-    for passage in seas.chart.passages:
-        if passage.name not in seas.passages and passage.max_draught < draught:
-            seas = seas.without(passage.name)
-    shoals = shoals_of_draught(
-        seas.chart, float(draught), float(draught), [(e.lat, e.lon) for e in ends]
-    )
-    return replace(seas, shoals=shoals)
-
-
-def _usual_shoals(chart: Chart, ends: Sequence[Endpoint]) -> Shoals:
-    """Return reefs and flats that ways keep off where no draught is given."""
-    harbours = [(end.lat, end.lon) for end in ends]
-    return shoals_of_draught(chart, USUAL_DEPTH / DRAUGHTS, LEAST_DEPTH, harbours)

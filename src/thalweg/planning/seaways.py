@@ -15,10 +15,12 @@ from thalweg.chart.depth.shoals import CONTOURS, Shoals
 from thalweg.chart.offing import disc_at, required_offing
 from thalweg.chart.passages import find_passages, split_avoided
 from thalweg.core.geodesy import (
+    MEAN_RADIUS,
     Position,
     densify,
     distance,
     format_position,
+    geocentric_unit_vectors,
     line_length,
 )
 from thalweg.core.types import BoolArray, FloatArray
@@ -38,6 +40,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 _FREE_OF_SHOALS: Final = 0.5 * NAUTICAL_MILE
 #: A way that shoals make longer than this is compared with the one over them.
 _MOST_LONGER: Final = 1.01
+_FAR_APART: Final = 60.0 * NAUTICAL_MILE  # ways over the graph are not by the same straits
 _STEP: Final = 0.25 * NAUTICAL_MILE  # at which the distance from land is looked up for a note
 _TOLERANCE: Final = 0.1 * NAUTICAL_MILE
 _LEAST_GAIN: Final = 1e-5  # share of the cost that each waypoint saves
@@ -201,7 +204,7 @@ class Seaways:
                 return direct
             pulled = [direct]
         pulled.append(self._pulled_between_canals(chart, off_land, past_shoals))
-        if longer and self._has_wide_shoals:
+        if (longer and self._has_wide_shoals) or _are_far_apart(over, round_shoals):
             pulled.append(self._pulled_between_canals(chart, off_land, over_shoals))
         clear = ClearWater(off_land, self.shoals)
         return min(pulled, key=partial(_cost_with_canals, clear))
@@ -274,6 +277,14 @@ class Seaways:
             return line
         again = clear.pulled(chart, line, least_gain=_LEAST_GAIN)
         return min(line, clear.moved(chart, again), key=clear.cost_of)
+
+
+def _are_far_apart(one: FloatArray, other: FloatArray) -> bool:
+    """Return whether two ways (n, 2) over the graph are by other straits."""
+    lat, lon, _ = densify(one[:, 0], one[:, 1], 0.5 * _FAR_APART)
+    away = geocentric_unit_vectors(other[:, 0], other[:, 1])[:, None]
+    away = np.linalg.norm(away - geocentric_unit_vectors(lat, lon), axis=-1).min(axis=1)
+    return bool(away.max() * MEAN_RADIUS > _FAR_APART)
 
 
 def _cost_with_canals(clear: ClearWater, way: Sequence[Position]) -> float:

@@ -42,6 +42,7 @@ from thalweg.network.passage_nodes import (
     passage_nodes,
     passage_pairs,
 )
+from thalweg.network.regional_lattice.lane_nodes import lane_nodes
 from thalweg.network.regional_lattice.narrow_channels import channel_nodes, channel_pairs
 from thalweg.network.regional_lattice.refinement_levels import (
     LatticeSpecification,
@@ -172,7 +173,7 @@ def grow_lattice(
         add_counts(rejected, counts)
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
     ends.append(canal_pairs(canals, n))
-    near = ground.frame.largest_unit * ground.step(ground.coast_levels)
+    near = ground.frame.largest_unit * ground.step(0 if len(named.lat) else ground.coast_levels)
     along = passage_pairs(ground.chart, stations, grid, named.joined)
     around = channel_pairs(ground.chart, stations, grid, n, near)
     ends += [along, pairs_without(around, along)]
@@ -180,8 +181,8 @@ def grow_lattice(
 
 
 def _passages_in(ground: LatticeSpecification) -> PassageNodes:
-    """Return the nodes along passages in the region of a lattice."""
-    found = passage_nodes(ground.chart)
+    """Return the nodes along passages and in traffic lanes in the region of a lattice."""
+    found = passage_nodes(ground.chart).followed_by(lane_nodes(ground.chart))
     inside = ground.region.contains(conformal_unit_vectors(found.lat, found.lon))
     return found.where(inside & ground.region.in_box(found.lat, found.lon))
 

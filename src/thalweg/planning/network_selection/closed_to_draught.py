@@ -100,16 +100,7 @@ class _ClosedToDraught:
     def _shoals_with(self, opened: Collection[str]) -> Shoals | None:
         """Return the shoals without the deep channels that lead to what is opened, by name."""
         lines = [one.line for one in self.ways if isinstance(one, Passage) and one.name in opened]
-        channels = [
-            channel.line
-            for channel in deep_channels()
-            if channel.max_draught < self.draught
-            and any(_is_beside(channel.line, line) for line in lines)
-        ]
-        shoals = self.seas.shoals
-        if shoals is None or not channels:
-            return shoals
-        return replace(shoals, channels=(*shoals.channels, *channels))
+        return shoals_open_beside(self.seas.shoals, lines, self.draught)
 
     def _opened(self, way: PortApproach, titles: Collection[str] | None) -> PortApproach:
         """Return a way from a berth without its limit, if it is one to open."""
@@ -129,6 +120,26 @@ class _ClosedToDraught:
             by_one = float(np.min(distance(*a, lat, lon) + distance(lat, lon, *b)))
             straight, longer = straight + direct, min(longer, by_one - direct)
         return straight + longer
+
+
+def shoals_open_beside(
+    shoals: Shoals | None, lines: Sequence[Sequence[Position]], draught: float
+) -> Shoals | None:
+    """Return shoals without the deep channels beside lines that are too shallow for a draught.
+
+    Parameters
+    ----------
+    lines : Of passages that are opened in spite of the draught, positions [deg].
+    draught : [m].
+    """
+    channels = [
+        channel.line
+        for channel in deep_channels()
+        if channel.max_draught < draught and any(_is_beside(channel.line, line) for line in lines)
+    ]
+    if shoals is None or not channels:
+        return shoals
+    return replace(shoals, channels=(*shoals.channels, *channels))
 
 
 def closed_to_draught_notes(

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart.approaches import PortApproach
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
 from thalweg.core.geodesy import Position, densify, distance
@@ -91,3 +92,23 @@ def shoal_miles(seas: Seaways, path: Sequence[Position]) -> float:
     counted = np.asarray(seas.chart.canal_of_legs(*way[:-1].T, *way[1:].T))[leg] < 0
     shallow = (seas.shoals.excess(*legs) > EXCESS[0]) & counted
     return float(np.sum(distance(*legs)[shallow])) / NAUTICAL_MILE
+
+
+def avoided_on_approach_notes(
+    seas: Seaways, straits: Sequence[str], approaches: Sequence[PortApproach]
+) -> tuple[str, ...]:
+    """Return a note on passages to avoid that the approach of a port leads through.
+
+    Parameters
+    ----------
+    seas : With what the request avoids.
+    straits : Names of the passages of the way.
+    approaches : Of the way.
+    """
+    names = [name for name in straits if name in seas.passages]
+    if not names or not approaches:
+        return ()
+    return (
+        f"Not avoided: {', '.join(names)}: the approach of a port leads through it. Approaches are "
+        "lines of a table; what is to avoid closes only the way between them.",
+    )

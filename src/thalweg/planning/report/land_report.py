@@ -126,9 +126,11 @@ def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
     if not any(saved_length(route, way) >= _LEAST_SAVED for way, _ in closed.values()):
         return []
     saved, names = _closed_on_shorter_way(context.chart, route, closed)
-    shorter = f"The way through is about {saved / NAUTICAL_MILE:,.0f} nm shorter"
+    reasons = notes_by_reason({name: closed[name][1] for name in names})
+    through = "through" if len(reasons) == 1 else "through all that is closed"
+    shorter = f"The way {through} is about {saved / NAUTICAL_MILE:,.0f} nm shorter"
     found = []
-    for alike, note in notes_by_reason({name: closed[name][1] for name in names}):
+    for alike, note in reasons:
         remedy = "" if isinstance(closed[alike[0]][0], Canal) else " (--open NAME opens one)"
         if remedy and len(alike) == 1:
             remedy = f" (--open {alike[0]!r} opens it)"
@@ -176,6 +178,12 @@ def _closed_on_shorter_way(
     if saved < _LEAST_SAVED:
         return 0.0, []
     used = ways_on_line(now, ways_of_names(now, sorted(names)), path)
+    for way in list(used) if len(used) > 1 else ():  # one that saves little of it is not named
+        less = opened.without(way.name)
+        still = length - path_length_and_canals(now.chart, less.graph_path(*ends))[0]
+        if still > saved - _LEAST_SAVED:
+            opened, saved = less, still
+            used = [one for one in used if one is not way]
     return saved, [title_of_way(way) for way in used]
 
 
