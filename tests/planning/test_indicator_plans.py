@@ -389,6 +389,11 @@ def test_champions_and_differences_in_words():
     thrifty = boat | {"fuel": 0.027, "distance": 11.4}  # were +0.004 t fuel, +1 nm
     assert difference_in_words(boat, thrifty) == "+4.00 kg fuel (+15 %), +0.6 nm"
     assert champions([boat, thrifty])["fuel"] == 1  # both were 0.03 t
+    dear = [
+        fast | other | {"time": t, "cost": c}
+        for t, c in ((260, 491.5), (300, 473.8), (354, 471.8), (769, 975.5))
+    ]
+    assert champions(dear)["cost"] == 2  # 2 less than the faster one
     close = calm | {"sick_percent": 29.6}  # in a table both are 30 %
     assert "sick_percent" not in champions([fast | other, close | other])
     nearly = [calm | other | {"sick_percent": value} for value in (8.8, 7.9)]

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from thalweg.chart.rings import Rings
 from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.file_reading import cause_of
 from thalweg.core.given_numbers import shortened_repr, to_number
 
 GeoJsonSource: TypeAlias = "str | PathLike[str] | Mapping[str, Any] | list[Any]"
@@ -52,7 +53,7 @@ def read_features(
             raise _nesting_error(what) from None
         except (OSError, ValueError) as error:
             raise InputError(
-                f"The {what} file {str(source)!r} cannot be read: {error}.",
+                f"The {what} file {str(source)!r} cannot be read: {cause_of(error)}.",
                 "It must be a GeoJSON file.",
                 "Check the path and the file.",
                 file=str(source),

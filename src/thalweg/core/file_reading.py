@@ -37,9 +37,8 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
             f"The {kind} file {name} does not exist.", "It is a text file.", "Check the path."
         ) from None
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
-        why = getattr(error, "strerror", None) or error
         raise InputError(
-            f"The {kind} file {name} cannot be read: {why}.",
+            f"The {kind} file {name} cannot be read: {cause_of(error)}.",
             "It is a text file that you may read.",
             "Check the path and the permissions.",
         ) from None
@@ -53,6 +52,11 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
             "Only text in UTF-8 is read.",
             "Save it as UTF-8.",
         ) from None
+
+
+def cause_of(error: Exception) -> str:
+    """Return why a file cannot be read, without the number and the path of the system's error."""
+    return str(getattr(error, "strerror", None) or error)
 
 
 def too_large(what: str, largest: float, size: float | None = None) -> tuple[str, str]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.file_reading import cause_of
 from thalweg.core.geodesy import check_position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -213,7 +214,7 @@ def read_places(path: str | PathLike[str]) -> list[tuple[str, Place]]:
             ]
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(
-            f"The file of ports {str(path)!r} cannot be read: {error}.",
+            f"The file of ports {str(path)!r} cannot be read: {cause_of(error)}.",
             "It is a CSV file with a column port, name or locode.",
             "Check the path and the file.",
         ) from error

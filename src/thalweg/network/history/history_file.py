@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import cause_of
 from thalweg.core.file_writing import replacing_file
 from thalweg.core.given_numbers import rounded_or_none
 from thalweg.core.types import FloatArray
@@ -98,7 +99,7 @@ def read_history(path: str | PathLike[str]) -> HistoryNetwork:
             data = json.load(file)
     except (OSError, ValueError) as error:
         raise InputError(
-            f"The history network {str(path)!r} cannot be read: {error}.",
+            f"The history network {str(path)!r} cannot be read: {cause_of(error)}.",
             "It is a JSON file, made by thalweg history build.",
             "Check the path, or build the network.",
             file=str(path),

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import cause_of
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import HOUR, KNOT, MINUTE
 from thalweg.operations.tracks.track_cleaning import CleaningRules, RawTrack, clean_track
@@ -179,7 +180,7 @@ def _fleet_table(
 
 def _unreadable(path: str | PathLike[str], error: Exception) -> InputError:
     return InputError(
-        f"The track file {str(path)!r} cannot be read: {error}.",
+        f"The track file {str(path)!r} cannot be read: {cause_of(error)}.",
         "It must be a CSV file with a line of column names, in UTF-8, or a Parquet file.",
         "Check the path and the file; Parquet needs pyarrow (pip install 'thalweg[studies]').",
         file=str(path),

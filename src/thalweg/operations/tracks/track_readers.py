@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import cause_of
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_cleaning import CleaningRules, RawTrack, TrackLog, clean_track
@@ -122,7 +123,7 @@ def _table(source: TrackSource) -> tuple[pd.DataFrame, str]:
             table = table.mask(commas, table.map(lambda x: str(x).replace(",", ".")))
     except (OSError, ValueError) as error:
         raise InputError(
-            f"The track file {str(path)!r} cannot be read: {error}.",
+            f"The track file {str(path)!r} cannot be read: {cause_of(error)}.",
             "It must be a CSV file with a line of column names, in UTF-8.",
             "Check the path and the file.",
             file=str(path),

@@ -52,6 +52,8 @@ _OF_PLACES: Final = (
 )  # fmt: skip
 _MOST_DIGITS: Final = {"time": 2, "distance": 1, "fuel": 5, "cost": 2}  # of small values
 _EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
+_READ_AS_SUMS: Final = ("fuel", "cost")
+_EQUAL_SUMS: Final = 1e-3  # the same for these, of the least
 _EQUAL_POINTS: Final = 0.5  # ... as are those in per cent of the time, by so many points
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
 _WORTH_WORDS_OF_TIME: Final = 0.005  # ... but those of time are
@@ -102,6 +104,8 @@ def champions(values: Sequence[dict[str, float]]) -> dict[str, int]:
             continue
         signed = column if figure.best == "least" else -column
         equal = _tolerance(name, column)
+        if name in _READ_AS_SUMS:  # a route with the larger sum is not called the cheapest
+            equal = min(equal, _EQUAL_SUMS * float(np.abs(column).min()))
         shown = np.round(signed, figure_digits(name, column))  # as in the table
         if np.ptp(column) > equal and np.ptp(shown) > 0.0:  # of equal ones the fastest
             near = signed <= signed.min() + equal

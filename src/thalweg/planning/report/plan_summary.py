@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core.time import utc_text
-from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS
+from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS, SHIP_RANGE
 from thalweg.planning.plan_front import least_words, not_rising, words_of_points
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
@@ -50,6 +50,7 @@ _FIGURE_WORDS: Final = {
     "front": "time",
 }
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
+_OF_WEATHER = (REASONS[OUTSIDE_PERIOD], REASONS[SHIP_RANGE])  # of none in a sea without weather
 
 
 def plan_summary(plan: PlanData) -> list[str]:
@@ -142,7 +143,7 @@ def limits_text(plan: PlanData) -> str:
     if not plan.best.feasible:
         return "NOT KEPT: the route cannot be sailed to its end"
     met = [r for r, count in sorted(plan.rejections.items(), key=lambda item: -item[1]) if count]
-    ignored = _ALWAYS if _has_weather(plan) else (*_ALWAYS, REASONS[OUTSIDE_PERIOD])
+    ignored = _ALWAYS if _has_weather(plan) else (*_ALWAYS, *_OF_WEATHER)
     met = [reason for reason in met if reason not in ignored]
     known = plan.plot_context
     kept = kept_text(plan.best, None if known is None else known.ship, plan.notes)
