@@ -72,7 +72,7 @@ def test_passages_that_the_voyage_avoids_are_not_named(world):
 def test_a_single_closed_passage_says_how_to_open_it(world):
     assert notes_on(world, BULKER, ROUND_VANCOUVER_ISLAND) == [
         "Passage closed: Johnstone and Seymour Narrows: it is for ships below 120 m (--open "
-        "'Johnstone and Seymour Narrows' opens it). The way through is about 143 nm shorter."
+        "'Johnstone and Seymour Narrows' opens it). The way through is about 129 nm shorter."
     ]
 
 
@@ -81,7 +81,7 @@ def test_a_canal_that_is_far_from_the_straight_line_is_named(world):
     (note,) = notes_on(world, CAPESIZE, BY_GOOD_HOPE)
     assert note == (
         "Passage closed: Panama Canal: the draught of 15.5 m is over the 15.24 m allowed. The way "
-        "through is about 3,520 nm shorter."
+        "through is about 3,306 nm shorter."
     )
     assert notes_on(world, CAPESIZE, BY_GOOD_HOPE, avoid=("panama",)) == []
 

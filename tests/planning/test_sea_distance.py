@@ -44,6 +44,11 @@ def test_the_way_by_another_strait_is_pulled_off_shoals_too():
     assert "Yucatan" in found.straits and found.nm == pytest.approx(1_185.0, abs=5.0)
 
 
+def test_ships_leave_callao_north_of_san_lorenzo():
+    """The Boqueron, between the island and La Punta, was on the way: 1,295 nm."""
+    assert sea_distance("Callao", "Valparaiso").nm == pytest.approx(1_302.0, abs=2.0)
+
+
 def test_a_passage_that_is_opened_is_used_in_spite_of_the_draught():
     ports = "Gothenburg", "Gdynia"
     closed = sea_distance(*ports, draught_m=9.0)

@@ -126,6 +126,8 @@ def closed_passage_notes(context: PlanningContext, route: Route) -> list[str]:
     if not any(saved_length(route, way) >= _LEAST_SAVED for way, _ in closed.values()):
         return []
     saved, names = _closed_on_shorter_way(context.chart, route, closed)
+    if not names:
+        return []
     reasons = notes_by_reason({name: closed[name][1] for name in names})
     through = "through" if len(reasons) == 1 else "through all that is closed"
     shorter = f"The way {through} is about {saved / NAUTICAL_MILE:,.0f} nm shorter"
@@ -184,7 +186,12 @@ def _closed_on_shorter_way(
         if still > saved - _LEAST_SAVED:
             opened, saved = less, still
             used = [one for one in used if one is not way]
-    return saved, [title_of_way(way) for way in used]
+    lengths = (  # the graph is coarse: a way over it is some miles too long
+        path_length_and_canals(now.chart, seas.path(*ends, offing=chart.offing.distance))[0]
+        for seas in (now, opened)
+    )
+    saved = float(np.subtract(*lengths))
+    return (saved, [title_of_way(way) for way in used]) if saved >= _LEAST_SAVED else (0.0, [])
 
 
 def saved_length(route: Route, way: NarrowWay) -> float:
