@@ -186,11 +186,11 @@ def _closed_on_shorter_way(
         if still > saved - _LEAST_SAVED:
             opened, saved = less, still
             used = [one for one in used if one is not way]
-    lengths = (  # the graph is coarse: a way over it is some miles too long
+    length, through = (  # the graph is coarse: a way over it is some miles too long
         path_length_and_canals(now.chart, seas.path(*ends, offing=chart.offing.distance))[0]
         for seas in (now, opened)
     )
-    saved = float(np.subtract(*lengths))
+    saved = length - through
     return (saved, [title_of_way(way) for way in used]) if saved >= _LEAST_SAVED else (0.0, [])
 
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.chart.zones.traffic_schemes import INSHORE, TRAFFIC_SCHEMES
+from thalweg.chart.zones.traffic_schemes import INSHORE, PORT_RADIUS, TRAFFIC_SCHEMES
 from thalweg.core.geodesy import distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -48,7 +48,8 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
     notes = []
     if kept:
         notes.append(
-            f"Keeps to starboard of the separation lines of {', '.join(kept)}: these are "
+            f"Keeps to starboard of the separation lines of {', '.join(kept)}, not within "
+            f"{PORT_RADIUS / NAUTICAL_MILE:.0f} nm of the ends of the voyage: these lines are "
             "approximate and not charted; lay the route off in the lanes of the chart. Schemes "
             f"other than the {len(TRAFFIC_SCHEMES)} of the package are not known here."
         )
