@@ -140,8 +140,9 @@ def _words(state: StudyProgress) -> str:
 _SHOWN_VOYAGES: Final = 10
 #: Figures on the terminal, where they are known and not all zero; the files have all of them.
 _SHOWN_FIGURES: Final = (
-    "time_h", "distance_nm", "fuel_t", "cost_usd", "waiting_h", "sick_percent", "inshore_percent",
-    "saved_time_h", "saved_fuel_t", "saved_sick_percent", "saved",
+    "time_h", "distance_nm", "fuel_t", "cost_usd", "waiting_h", "waiting_above_limits_h",
+    "sick_percent", "inshore_percent", "saved_time_h", "saved_fuel_t", "saved_sick_percent",
+    "saved",
 )  # fmt: skip
 _SHOWN_SHARES: Final = (
     "without_route", "waiting_days_mean", "waiting_days_max", "inshore_share",

@@ -17,6 +17,7 @@ from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
 from thalweg.planning.report.filled_weather import has_fills, wave_shares
+from thalweg.planning.report.waiting_report import hours_above_limits
 from thalweg.planning.request.filled_sea import filled_in_turns
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
 from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
@@ -119,14 +120,14 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         path = folder / str(request["track"])
         track = read_track(path, depart=voyage.get("depart"))
         route = _evaluated(track, ship, sea, chart, voyage)
-        return _route_figures(route, sea)
+        return _route_figures(route, ship, sea)
     answer = _planned(voyage, ship, sea, chart, request)
     if answer.cancelled:  # Ctrl-C: the best plan so far is no result of this row
         raise KeyboardInterrupt
     short = next((note for note in answer.notes if note.startswith(NOT_REACHED)), None)
     if short is not None:
         raise CoverageError(short, "A row of a study is a whole voyage.", "Add data, or a fill.")
-    figures = _route_figures(answer.best, sea)
+    figures = _route_figures(answer.best, ship, sea)
     objective = answer.voyage.objective
     networks = answer.provenance.get("networks", [])
     figures |= {
@@ -179,7 +180,7 @@ def _savings(answer: Plan) -> dict[str, Any]:
     return {name: nearest[name] for name in names}
 
 
-def _route_figures(route: Route, sea: Sea) -> dict[str, Any]:
+def _route_figures(route: Route, ship: Ship, sea: Sea) -> dict[str, Any]:
     """Return the totals of a route, the worst weather on it, and where its waves are filled."""
     figures = {
         key: value
@@ -190,6 +191,7 @@ def _route_figures(route: Route, sea: Sea) -> dict[str, Any]:
         if name not in _NAMED_OTHERWISE:
             figures[name] = finite_or_none(indicator_value(route, name))
     figures["first_violation"] = str(route.violations[0]) if route.violations else None
+    figures["waiting_above_limits_h"] = hours_above_limits(route, ship)
     figures |= worst_weather(route.samples)
     height = route.samples.get(_WAVE_HEIGHT)
     if height is not None and has_fills(sea):

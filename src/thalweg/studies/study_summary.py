@@ -30,7 +30,8 @@ from thalweg.studies.study_parts import read_parts, read_study
 
 #: Figures with quantiles, where rows have them; then the indicators and the savings.
 FIGURES: Final = (
-    "time_h", "fuel_t", "co2_t", "distance_nm", "waiting_h", "waves_filled_percent"
+    "time_h", "fuel_t", "co2_t", "distance_nm", "waiting_h", "waiting_above_limits_h",
+    "waves_filled_percent",
 )  # fmt: skip
 _SAVINGS: Final = (
     "saved_time_h", "saved_fuel_t", "saved_sick_percent", "saved", "saved_by_route",

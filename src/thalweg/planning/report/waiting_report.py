@@ -63,6 +63,23 @@ def waiting_weather_texts(route: Route, ship: Ship) -> list[str]:
     return notes
 
 
+def hours_above_limits(route: Route, ship: Ship) -> float:
+    """Return for how long a ship waits at sea in waves or wind above her limits [h]."""
+    met = route.wait_samples
+    known = [
+        (met.get(WAVE_HEIGHT), ship.limits.wave_height),
+        (_wind_speed(route), ship.limits.wind_speed),
+    ]
+    hours = 0.0
+    for _, wait, lying in _waits(route):
+        above = np.zeros(int(np.count_nonzero(lying)), bool)
+        for values, limit in known:
+            if values is not None and np.isfinite(limit):
+                above |= values[lying] > limit * (1.0 + 1e-9)
+        hours += wait * float(np.mean(above))
+    return hours
+
+
 def _waits(route: Route) -> Iterator[tuple[tuple[float, float], float, BoolArray]]:
     """Yield of each wait on the way its position [deg], its length [h] and which samples it has."""
     if not route.wait_samples:
