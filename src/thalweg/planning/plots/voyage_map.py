@@ -97,6 +97,7 @@ def _draw_sea(figure: Any, axes: Any, plan: PlanData, context: PlotContext, box:
     shown = _shading_field(context, moment, lat, lon)
     if shown is not None:
         values, label, colours = shown
+        values = np.round(values, 5)  # what is above the last level by a rounding stays white
         filled = axes.contourf(lon, lat, values, levels=14, cmap=_colours(colours), zorder=1)
         bar = figure.colorbar(filled, ax=axes, shrink=0.9, pad=0.01, aspect=30)
         bar.set_label(label, fontsize=8)
