@@ -51,6 +51,7 @@ from thalweg.planning.request.voyage_objective import with_voyage_prices
 from thalweg.planning.single.certified_bound import certified_total, usual_proof_time
 from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
+from thalweg.planning.single.waits_by_via_points import by_later_departure
 from thalweg.planning.voyage import Voyage
 from thalweg.planning.voyage_context import ends_by_ways, voyage_context
 from thalweg.route import Route, with_wind_speed
@@ -235,6 +236,9 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
         return plan_trade_off(context, ends)
     began = clock.perf_counter()
     stretches = _plan_stretches(context, ends)
+    if context.voyage.depart_window is None:
+        planned = partial(_plan_stretches, context, ends)
+        stretches = by_later_departure(context, stretches, planned)
     routes = [stretch.route for stretch in stretches]
     seconds = context.proof_seconds
     if seconds is None:
@@ -244,8 +248,12 @@ def _plan_at_sea(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     return _assemble_plan(context, ends, stretches, bound)
 
 
-def _plan_stretches(context: PlanningContext, ends: list[Endpoint]) -> list[StretchResult]:
+def _plan_stretches(
+    context: PlanningContext, ends: list[Endpoint], depart: float | None = None
+) -> list[StretchResult]:
+    """Return the stretches between end points, from a departure [s since 1970] or the voyage's."""
     window = (context.voyage.earliest_departure, context.voyage.latest_departure)
+    window = window if depart is None else (depart, depart)
     stretches: list[StretchResult] = []
     places = [(end.lat, end.lon) for end in ends]
     for number, (start, goal) in enumerate(itertools.pairwise(ends)):

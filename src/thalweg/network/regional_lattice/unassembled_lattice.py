@@ -173,6 +173,7 @@ def grow_lattice(
         add_counts(rejected, counts)
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
     ends.append(canal_pairs(canals, n))
+    # lanes and passages are linked to nodes of the open sea, too: 24 of the nearest
     near = ground.frame.largest_unit * ground.step(0 if len(named.lat) else ground.coast_levels)
     along = passage_pairs(ground.chart, stations, grid, named.joined)
     around = channel_pairs(ground.chart, stations, grid, n, near)

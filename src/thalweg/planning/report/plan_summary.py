@@ -50,7 +50,10 @@ _FIGURE_WORDS: Final = {
     "front": "time",
 }
 _ALWAYS = ("land", "no-go zone")  # reasons that every coastal route meets
-_OF_WEATHER = (REASONS[OUTSIDE_PERIOD], REASONS[SHIP_RANGE])  # of none in a sea without weather
+_OF_WEATHER = (
+    REASONS[OUTSIDE_PERIOD],
+    REASONS[SHIP_RANGE],
+)  # not named where the sea has no weather
 
 
 def plan_summary(plan: PlanData) -> list[str]:

@@ -15,6 +15,7 @@ from thalweg.route import Route
 from thalweg.route.refinement.better_route import shorten_waits
 from thalweg.search import SearchResult
 
+ARRIVES_LATER: Final = "Arrives "  #: a note on the price of such a route begins so
 #: Shares of the time of the voyage by which such a route may arrive later, the least first.
 _LATER: Final = (0.01, 0.025, 0.05, 0.1, 0.2, 0.3)
 _LEAST_LATER: Final = 0.5 * HOUR  # ... and at least [s]
@@ -53,11 +54,16 @@ def without_waits_above_limits(
         tried = _from_berth(context, tried, latest)
         if tried.arrive <= latest:
             later = tried.arrive - route.arrive
-            return tried, [] if later < MINUTE else [
-                f"Arrives {duration_text(later)} later than is possible: to arrive earlier the "
-                f"ship would have to wait at sea {above[0]}."
-            ]
+            return tried, [] if later < MINUTE else [arrives_later_note(later, above[0])]
     return route, []
+
+
+def arrives_later_note(later: float, avoided: str) -> str:
+    """Return a note on a route that arrives later [s] than one with a wait in bad weather."""
+    return (
+        f"{ARRIVES_LATER}{duration_text(later)} later than is possible: to arrive earlier the ship "
+        f"would have to wait at sea {avoided}."
+    )
 
 
 def _from_berth(context: PlanningContext, route: Route, latest: float) -> Route:
