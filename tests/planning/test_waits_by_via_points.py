@@ -27,9 +27,9 @@ def gale(opens_h):
     return Sea.from_functions({"sea_surface_wave_significant_height": height, **calm})
 
 
-def planned(opens_h):
+def planned(opens_h, **more):
     ship = Ship.simple(speed_kn=10.0, draught_m=5.0, max_wave_height_m=2.0)
-    voyage = Voyage(start=(51.0, 0.0), goal=(51.0, 3.0), via=[VIA], depart=DEPART)
+    voyage = Voyage(start=(51.0, 0.0), goal=(51.0, 3.0), via=[VIA], depart=DEPART, **more)
     return plan(voyage, ship=ship, sea=gale(opens_h), chart=WATER, resolution=8000.0, proof=0.0)
 
 
@@ -51,3 +51,11 @@ def test_a_voyage_that_need_not_wait_leaves_at_once():
     assert found.best.waiting_h == 0.0
     assert found.best.time_h == pytest.approx(11.37, abs=0.02)
     assert not any(note.startswith("Arrives ") for note in found.notes)
+
+
+@pytest.mark.slow
+def test_the_wait_stays_where_a_later_departure_is_too_late():
+    """The plan of a later departure is refused; the one that is found is not."""
+    found = planned(12.0, arrive_by=DEPART + 18.5 * HOUR)
+    assert found.best.feasible and found.best.time_h == pytest.approx(17.7, abs=0.1)
+    assert any(note.startswith("Waits at sea 6.3 h") for note in found.notes)

@@ -16,6 +16,7 @@ from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
 PASSES_TIME: Final = "Waiting is not permitted"  #: notes on miles that pass the time begin so
+_ABOVE: Final = 1.0 + 1e-9  # times a limit: no rounding
 LEAST_WAIT_H: Final = 0.1  #: shorter waits are not stated [h]
 _ADVICE = (
     "weather is checked under way only. Depart later, or name where she may wait (zones of the "
@@ -36,20 +37,13 @@ def waiting_weather_texts(route: Route, ship: Ship) -> list[str]:
 
     Waits in unknown weather are part of them.
     """
-    met = route.wait_samples
-    known = [
-        ("waves", met.get(WAVE_HEIGHT), ship.limits.wave_height, 1.0, "m"),
-        ("wind", _wind_speed(route), ship.limits.wind_speed, KNOT, "kn"),
-    ]
     notes = []
     for place, hours, lying in _waits(route):
         where = f"{hours:.1f} h at {format_position(*place)}"
-        for name, values, limit, unit, symbol in known:
-            if values is None or not np.isfinite(limit):
-                continue
+        for name, values, limit, unit, symbol in _limited_weather(route, ship):
             here = values[lying]
             unknown = np.isnan(here)
-            if (here > limit * (1.0 + 1e-9)).any():
+            if (here > limit * _ABOVE).any():
                 most = float(np.nanmax(here)) / unit
                 notes.append(
                     f"{where} in {name} of up to {most:.1f} {symbol}, above the limit of "
@@ -65,19 +59,26 @@ def waiting_weather_texts(route: Route, ship: Ship) -> list[str]:
 
 def hours_above_limits(route: Route, ship: Ship) -> float:
     """Return for how long a ship waits at sea in waves or wind above her limits [h]."""
-    met = route.wait_samples
-    known = [
-        (met.get(WAVE_HEIGHT), ship.limits.wave_height),
-        (_wind_speed(route), ship.limits.wind_speed),
-    ]
     hours = 0.0
     for _, wait, lying in _waits(route):
         above = np.zeros(int(np.count_nonzero(lying)), bool)
-        for values, limit in known:
-            if values is not None and np.isfinite(limit):
-                above |= values[lying] > limit * (1.0 + 1e-9)
+        for _, values, limit, _, _ in _limited_weather(route, ship):
+            above |= values[lying] > limit * _ABOVE
         hours += wait * float(np.mean(above))
     return hours
+
+
+def _limited_weather(route: Route, ship: Ship) -> list[tuple[str, FloatArray, float, float, str]]:
+    """Return the weather in waits that a ship limits: name, samples, limit, unit and symbol."""
+    known = [
+        ("waves", route.wait_samples.get(WAVE_HEIGHT), ship.limits.wave_height, 1.0, "m"),
+        ("wind", _wind_speed(route), ship.limits.wind_speed, KNOT, "kn"),
+    ]
+    return [
+        (name, values, limit, unit, symbol)
+        for name, values, limit, unit, symbol in known
+        if values is not None and np.isfinite(limit)
+    ]
 
 
 def _waits(route: Route) -> Iterator[tuple[tuple[float, float], float, BoolArray]]:

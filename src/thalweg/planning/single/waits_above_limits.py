@@ -16,8 +16,8 @@ from thalweg.route.refinement.better_route import shorten_waits
 from thalweg.search import SearchResult
 
 ARRIVES_LATER: Final = "Arrives "  #: a note on the price of such a route begins so
-#: Shares of the time of the voyage by which such a route may arrive later, the least first.
-_LATER: Final = (0.01, 0.025, 0.05, 0.1, 0.2, 0.3)
+MOST_LATER: Final = 0.3  #: share of the time of the voyage by which such a route may arrive later
+_LATER: Final = (0.01, 0.025, 0.05, 0.1, 0.2, MOST_LATER)  # shares that are tried
 _LEAST_LATER: Final = 0.5 * HOUR  # ... and at least [s]
 _MOST_WITHOUT_WAITS: Final = 3  # paths without waits that are tried
 
@@ -42,7 +42,7 @@ def without_waits_above_limits(
     above = waiting_weather_texts(route, context.ship) if route.feasible else []
     if not above or context.voyage.objective == "distance":
         return route, []
-    latest = route.arrive + max(_LATER[-1] * route.time_h * HOUR, _LEAST_LATER)
+    latest = route.arrive + max(MOST_LATER * route.time_h * HOUR, _LEAST_LATER)
     latest = min(latest, context.latest_arrival)
     for found in _late_paths(route, paths, latest):
         if waiting_weather_texts(paths.sail(found), context.ship):

@@ -8,17 +8,21 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
+from thalweg.core.errors import CoverageError, NoRouteError
 from thalweg.core.units import HOUR
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_texts
 from thalweg.planning.single.late_paths import after_wait_at_berth
 from thalweg.planning.single.stretch_result import StretchResult
-from thalweg.planning.single.waits_above_limits import ARRIVES_LATER, arrives_later_note
+from thalweg.planning.single.waits_above_limits import (
+    ARRIVES_LATER,
+    MOST_LATER,
+    arrives_later_note,
+)
 from thalweg.route import join as join_routes
 
 Stretches: TypeAlias = list[StretchResult]
 
-_LATER: Final = 0.3  # share of the time of the voyage by which it may arrive later
 _MOST_TRIED: Final = 3  # departures
 
 
@@ -40,15 +44,17 @@ def by_later_departure(
     list of StretchResult : The given ones where they wait in no such weather, or where no departure
         that is tried arrives at most 30 % of the voyage later.
     """
+    if len(stretches) == 1 or not context.voyage.wait:
+        return stretches
     route = join_routes([stretch.route for stretch in stretches])
     above = waiting_weather_texts(route, context.ship) if route.feasible else []
-    if len(stretches) == 1 or not above or not context.voyage.wait:
-        return stretches
-    latest = min(route.arrive + _LATER * route.time_h * HOUR, context.latest_arrival)
+    latest = min(route.arrive + MOST_LATER * route.time_h * HOUR, context.latest_arrival)
     tried = route
-    for _ in range(_MOST_TRIED):
-        depart = tried.depart + float(np.sum(tried.track.wait))
-        later = planned(depart)
+    for _ in range(_MOST_TRIED if above else 0):
+        try:
+            later = planned(tried.depart + float(np.sum(tried.track.wait)))
+        except (NoRouteError, CoverageError):  # too late for the latest arrival or the data
+            break
         tried = join_routes([stretch.route for stretch in later])
         if not tried.feasible or tried.arrive > latest:
             break
