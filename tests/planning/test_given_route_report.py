@@ -1,14 +1,21 @@
 """What the evaluation of a route from a file states about land, passages and traffic."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, evaluate
-from thalweg.planning.report.given_route_report import file_speed_notes, given_route_notes
+from thalweg.planning.report.given_route_report import (
+    _sea_ends,
+    file_speed_notes,
+    given_route_notes,
+)
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.route import read_track
+from thalweg.route.route_tables import LEG_KINDS
 
 SHIP = Ship.load("handysize-bulker")
 
@@ -133,3 +140,18 @@ def test_depth_is_not_read_near_the_sea_ends_of_approaches_as_in_plans(chart):
     for line in (BALBOA, BALBOA[::-1], at_sea, at_sea[::-1]):
         assert not is_depth_to_check(line, chart)
     assert is_depth_to_check([(9.0, -79.3), *at_sea[1:]], chart)  # from elsewhere
+
+
+def test_lanes_do_not_count_round_the_sea_ends_of_approaches():
+    """A file from Port Klang ran 12 nm "against the traffic" that its plan did not count."""
+    kind = LEG_KINDS.index("approach")
+    lat = np.zeros(6)
+    for kinds, ends in (
+        ([kind, kind, 0, 0, kind], (2, 4)),
+        ([0, 0, 0, 0, 0], (0, 5)),
+        ([kind] * 5, (0, 5)),
+    ):
+        route = SimpleNamespace(
+            track=SimpleNamespace(lat=lat), legs={"leg_kind": np.array(kinds), "length": lat[1:]}
+        )
+        assert _sea_ends(route) == ends

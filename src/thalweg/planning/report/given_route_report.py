@@ -56,8 +56,20 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
         why = size_restriction(passage, ship)
         notes += [f"{PASSAGE_CLOSED}: the route leads through {why}."] if why else []
     if not chart.zones.lanes:
-        chart = chart_with_schemes(chart, ship, [(float(lat[k]), float(lon[k])) for k in (0, -1)])
+        places = [(float(lat[k]), float(lon[k])) for k in _sea_ends(route)]
+        chart = chart_with_schemes(chart, ship, places)
     return notes + lane_notes(chart, route)
+
+
+def _sea_ends(route: Route) -> tuple[int, int]:
+    """Return the waypoints at the sea ends of the approaches, round which lanes do not count.
+
+    Plans are made between them; without approaches they are the first and the last waypoint.
+    """
+    count = len(route.track.lat)
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(count - 1)))
+    at_sea = np.flatnonzero(kind != LEG_KINDS.index("approach"))
+    return (int(at_sea[0]), int(at_sea[-1]) + 1) if at_sea.size else (0, count - 1)
 
 
 def file_speed_notes(route: Route) -> list[str]:
