@@ -9,9 +9,15 @@ import numpy as np
 import pytest
 
 from thalweg import Sea, Ship, evaluate
+from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.cli.main import main
-from thalweg.planning.report.approach_report import turn_back_notes, turn_back_notes_of_route
+from thalweg.planning.report.approach_report import (
+    approach_limit_notes,
+    turn_back_notes,
+    turn_back_notes_of_route,
+)
 from thalweg.planning.report.note_order import count_of_dangers
+from thalweg.planning.seaways import world_chart
 from thalweg.route.route_tables import LEG_KINDS
 
 LAT = np.array([56.40, 56.28, 56.45, 56.60])  # out of Oban to the south-west, and back
@@ -39,6 +45,31 @@ def test_ends_of_approaches_are_found_on_a_route(kinds, found):
     kind = np.array([LEG_KINDS.index(name) for name in kinds])
     sailed = replace(route, legs=dict(route.legs) | {"leg_kind": kind})
     assert len(turn_back_notes_of_route(sailed)) == found
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_the_approach_of_hamburg_is_too_shallow_for_a_tanker_of_20_8_m(closed):
+    chart = world_chart()
+    if closed:  # as in a plan of this ship
+        chart = chart.without_passages("Elbe (Brunsbuttel to sea)")
+    hamburg = next(one for one in PORT_APPROACHES.all if one.label == "Hamburg, DE")
+    (note,) = approach_limit_notes(chart, hamburg, {"draught": 20.8})
+    assert note == (
+        "The approach is too small: that of Hamburg, DE leads through Elbe (Brunsbuttel to sea): "
+        "the draught of 20.8 m is over the 13.5 m allowed (general knowledge, unchecked). Load "
+        "less, or ask the port."
+    )
+    assert count_of_dangers([note]) == 1
+    assert approach_limit_notes(chart, hamburg, {"draught": 12.0, "beam": 50.0}) == []
+
+
+def test_a_ship_too_high_for_the_bridges_of_an_approach_is_stated():
+    chart = world_chart()
+    new_york = next(one for one in PORT_APPROACHES.all if one.label == "New York City, US")
+    (note,) = approach_limit_notes(chart, new_york, {"draught": 9.0, "air_draught": 70.0})
+    assert "Verrazano Narrows: the air draught of 70 m is over the 65 m allowed" in note
+    local = next(one for one in PORT_APPROACHES.all if one.label == "Sortland, NO")
+    assert approach_limit_notes(chart, local, {"length": 200.0, "air_draught": 20.0}) == []
 
 
 @pytest.mark.slow

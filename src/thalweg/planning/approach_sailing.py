@@ -22,11 +22,13 @@ from thalweg.planning.plan_data import PlotContext, Proof
 from thalweg.planning.plan_front import BaselineComparison, ParetoFront
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.approach_report import (
+    approach_limit_notes,
     port_depth_note,
     turn_back_notes_of_route,
     unknown_depth_text,
 )
 from thalweg.planning.report.provenance import provenance
+from thalweg.planning.request.offing_choice import ship_dimensions
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.voyage import Voyage
@@ -161,6 +163,7 @@ class ApproachSailing:
                 + unknown_depth_text(approach, draught)
             )
             found.append(port_depth_note(approach, draught))
+            found += approach_limit_notes(context.chart, approach, ship_dimensions(context.ship))
         return tuple(filter(None, found))
 
     def _duration(self, approach: PortApproach | None) -> float:

@@ -26,6 +26,7 @@ from thalweg.planning.network_selection.seas_of_distance import opened_names, se
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
 from thalweg.planning.report.approach_report import (
+    approach_limit_notes,
     port_depth_note,
     turn_back_notes,
     unknown_depth_text,
@@ -233,10 +234,10 @@ def _way_over_seas(
         raise named or error from None
     notes = tuple(end.note for end in way.ends if end.note)
     if draught is not None:
-        texts = [
-            port_depth_note(one, draught) or unknown_depth_text(one, draught).strip()
-            for one in way.approaches
-        ]
+        texts = []
+        for one in way.approaches:
+            texts.append(port_depth_note(one, draught) or unknown_depth_text(one, draught).strip())
+            texts += approach_limit_notes(chart, one, {"draught": draught})
         notes += tuple(dict.fromkeys(filter(None, texts)))
     names = ends[0].name, ends[-1].name
     if not way.at_sea:  # the approaches meet

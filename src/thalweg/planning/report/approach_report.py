@@ -1,14 +1,17 @@
-"""Notes on approaches: ports too shallow for a ship, ways that turn back where one ends."""
+"""Notes on approaches: too shallow or small for a ship, ways that turn back where one ends."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
+from thalweg.chart import Chart
 from thalweg.chart.approaches import PortApproach
+from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.core.geodesy import format_position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -18,6 +21,7 @@ from thalweg.route.route_tables import LEG_KINDS
 
 TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
 PORT_TOO_SHALLOW: Final = "The port is too shallow"  #: a note on such a port begins so
+APPROACH_TOO_SMALL: Final = "The approach is too small"  #: a note on such an approach begins so
 _SHARP: Final = math.radians(120.0)
 _DEEP_SHIP: Final = 14.0  # draught that many ports do not take [m]
 _LONG_APPROACH: Final = 5.0  # [nm]
@@ -38,6 +42,30 @@ def port_depth_note(approach: PortApproach, draught: float) -> str:
         f"{PORT_TOO_SHALLOW}: {largest}; the ship draws {draught:.1f} m. Load less, or ask the "
         "port."
     )
+
+
+def approach_limit_notes(
+    chart: Chart, approach: PortApproach, sizes: Mapping[str, float | None]
+) -> list[str]:
+    """Return a note for each named passage of an approach that is too small for a ship.
+
+    Parameters
+    ----------
+    chart : Its coastline and passages. Passages are also for ports on them, so that their use is
+        not considered.
+    sizes : Draught, beam, length and air draught of the ship [m], those that are known, by the
+        names of `thalweg.chart.passages.Passage.ship_restriction`.
+    """
+    every = (*chart.passages, *chart.closed_passages)  # the size of a ship may have closed it
+    limited = [replace(one, use="trade") for one in every if one.limits]
+    too_small = [(one, one.ship_restriction(**sizes)) for one in limited]
+    reasons = {one: reason for one, reason in too_small if reason}
+    lat, lon = np.array(approach.line, float).T
+    return [
+        f"{APPROACH_TOO_SMALL}: that of {approach.label} leads through {reasons[one]} "
+        f"({one.source.rpartition(': ')[2]}). Load less, or ask the port."
+        for _at, one in passages_crossed(chart.coastline, reasons, lat, lon)
+    ]
 
 
 def unknown_depth_text(approach: PortApproach, draught: float) -> str:

@@ -6,7 +6,11 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from thalweg.network.layered.sections_round_land import OTHER_WAYS
-from thalweg.planning.report.approach_report import PORT_TOO_SHALLOW, TURNS_BACK
+from thalweg.planning.report.approach_report import (
+    APPROACH_TOO_SMALL,
+    PORT_TOO_SHALLOW,
+    TURNS_BACK,
+)
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.filled_weather import FILLED
@@ -39,7 +43,7 @@ SPEEDS_CHOSEN: Final = "The plan chooses among"
 #: First words of notes that no summary may leave out, the most dangerous first.
 _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NOT_REACHED,
-    PORT_TOO_SHALLOW,
+    (PORT_TOO_SHALLOW, APPROACH_TOO_SMALL),
     LIMIT_EXCEEDED,
     SQUAT_UNCOUNTED,
     WAITS,
