@@ -362,7 +362,7 @@ def test_high_latitudes_give_a_warning(capsys, ship):
 def test_a_value_that_is_no_number_gets_one_line_on_its_option(capsys):
     assert main(["plan", "Dover", "Calais", "--ship", "gunnerus", "--calm", "--speed", "15kn"]) == 2
     text = capsys.readouterr().err
-    assert "argument --speed: invalid float value: '15kn'." in text
+    assert "argument --speed: '15kn' is not a number without a unit." in text
     assert "--speed KN: ordered speed through calm water [kn], also between" in text
     assert "See thalweg plan --help." in text
     assert "usage:" not in text and len(text.splitlines()) == 3

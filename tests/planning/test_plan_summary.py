@@ -29,6 +29,7 @@ from thalweg.planning.report.route_summary import (
     route_items,
     weather_text,
 )
+from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.route import Violation
 from thalweg.route.route_tables import LEG_KINDS
@@ -370,6 +371,16 @@ def test_the_least_clearance_is_written_as_in_the_limit_that_is_not_kept(least, 
     route = SimpleNamespace(min_ukc_m=least, samples=samples, violations=(shoal,))
     assert least_clearance_text(route) == f"least under-keel clearance {text} m"
     assert f"({text} m, limit 1.20" in str(shoal)
+
+
+def test_kept_limits_are_those_at_rest_where_squat_takes_the_clearance():
+    deep = SimpleNamespace(min_ukc_m=0.2)
+    assert kept_text(deep, None, ()) == "all kept"
+    squat = f"{SQUAT_UNCOUNTED}: the ship is 0.8 m too deep"
+    told = kept_text(deep, None, (squat,))
+    assert told == "all kept at rest, NOT with squat: see the note on the clearance"
+    both = kept_text(deep, None, (squat, "Waits at sea 2 h"))
+    assert both.startswith("all kept under way, see the note on the wait; at rest, NOT with squat")
 
 
 def test_kept_limits_name_safety_and_comfort_in_waves():

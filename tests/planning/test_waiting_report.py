@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from thalweg.planning.report.waiting_report import hours_above_limits
+from thalweg.planning.report.waiting_report import heavy_weather_warnings, hours_above_limits
 from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
 
@@ -41,3 +41,19 @@ def waiting_route():
 def test_hours_above_limits(waves, wind, hours):
     ship = SimpleNamespace(limits=SimpleNamespace(wave_height=waves, wind_speed=wind))
     assert hours_above_limits(waiting_route(), ship) == pytest.approx(hours)
+
+
+def test_a_wait_in_a_gale_that_the_limits_permit_is_stated():
+    route = waiting_route()
+    free = SimpleNamespace(limits=SimpleNamespace(wave_height=np.inf, wind_speed=np.inf))
+    (note,) = heavy_weather_warnings(route, free)  # 25 m/s of wind; the 9 m are at the berth
+    assert note.startswith("Waits at sea 10.0 h at 0.0000N 2.0000E in waves of up to 3.0 m")
+    assert "wind of up to 49 kn" in note and "burns fuel, which is not counted" in note
+    limited = SimpleNamespace(limits=SimpleNamespace(wave_height=10.0, wind_speed=26.0))
+    assert heavy_weather_warnings(route, limited) == [note]
+    strict = SimpleNamespace(limits=SimpleNamespace(wave_height=2.0, wind_speed=np.inf))
+    assert heavy_weather_warnings(route, strict) == []  # it has the warning of a broken limit
+    route.wait_samples[EASTWARD_WIND] = np.full(16, 17.0)  # 33 kn, Beaufort 7
+    assert heavy_weather_warnings(route, free) == []
+    route.wait_samples[WAVE_HEIGHT] = np.full(16, 4.1)
+    assert len(heavy_weather_warnings(route, free)) == 1

@@ -75,6 +75,9 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Raise `InputError` instead of ending the process."""
         words = _suggestions(self, message)
+        message = re.sub(
+            r"invalid (?:float|int) value: ('.*')", r"\1 is not a number without a unit", message
+        )
         raise InputError(
             f"The command line is not understood: {message}.",
             _short_usage(self, message),

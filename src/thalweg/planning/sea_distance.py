@@ -259,7 +259,9 @@ def _way_over_seas(
         canals = path_length_and_canals(chart, way.at_sea)[1]
     lat, lon = np.array(way.line, float).T
     straits = names_passed(chart.coastline, chart.passages, lat, lon)
-    notes += avoided_on_approach_notes(every, straits, way.approaches)
+    small = {one.name for one in chart.passages if draught and one.max_draught < draught}
+    straits_to_use = [name for name in straits if name not in small]  # those have their own note
+    notes += avoided_on_approach_notes(every, straits_to_use, way.approaches)
     first, last = way.ends[0].approach, way.ends[-1].approach
     joints = [len(first.line) - 1] if first else []
     joints += [len(way.line) - len(last.line)] if last else []

@@ -23,7 +23,11 @@ from thalweg.planning.report.land_report import land_notes
 from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.report.squat_report import squat_notes
 from thalweg.planning.report.unread_weather import unread_weather_notes
-from thalweg.planning.report.waiting_report import waiting_notes, waiting_weather_warnings
+from thalweg.planning.report.waiting_report import (
+    heavy_weather_warnings,
+    waiting_notes,
+    waiting_weather_warnings,
+)
 from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -69,6 +73,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
     notes += waiting_weather_warnings(route, context.ship)
+    notes += heavy_weather_warnings(route, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
     notes += squat_notes(route, context.ship, context.min_ukc)
     if context.needs.limits.depth_checked:
@@ -114,7 +119,8 @@ def given_route_warnings(
     notes += guesses_of_files(sea.layers, frozenset(route.samples))
     notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
     notes += unread_weather_notes(route, sea, ship)
-    notes += waiting_weather_warnings(route, ship)
+    notes += waiting_weather_warnings(route, ship) + heavy_weather_warnings(route, ship)
+    notes += waiting_notes(route)
     notes += given_route_notes(route, chart=chart, ship=ship) + file_speed_notes(route)
     notes += squat_notes(route, ship, min_ukc)
     if route.min_ukc_m is not None:

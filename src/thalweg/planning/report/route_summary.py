@@ -16,6 +16,7 @@ from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
 from thalweg.planning.report.depth_report import CHECK_DEPTH
 from thalweg.planning.report.filled_weather import wave_shares
+from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.waiting_report import WAITS
 from thalweg.route.number_texts import amount_text, miles_text
 from thalweg.sea.fill_policies import is_calm_layer
@@ -309,7 +310,10 @@ def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
     """Return that all limits are kept, or which, where the depth is not known."""
     under_way = any(note.startswith(WAITS) for note in notes)
     if route.min_ukc_m is not None:
-        return "all kept under way, see the note on the wait" if under_way else "all kept"
+        where = ["under way, see the note on the wait"] if under_way else []
+        if any(note.startswith(SQUAT_UNCOUNTED) for note in notes):
+            where.append("at rest, NOT with squat: see the note on the clearance")
+        return " ".join(("all kept", "; ".join(where))).rstrip()
     checked = ["land", "zones"]
     if ship is not None:
         named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))

@@ -18,6 +18,8 @@ WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
 PASSES_TIME: Final = "Waiting is not permitted"  #: notes on miles that pass the time begin so
 _ABOVE: Final = 1.0 + 1e-9  # times a limit: no rounding
 LEAST_WAIT_H: Final = 0.1  #: shorter waits are not stated [h]
+GALE: Final = 34.0 * KNOT  #: wind of Beaufort 8, in which no wait at sea is without a note
+_ROUGH: Final = 4.0  # waves in which no wait at sea is without a note [m]
 _ADVICE = (
     "weather is checked under way only. Depart later, or name where she may wait (zones of the "
     "kind anchorage)."
@@ -30,6 +32,37 @@ def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
     The first waypoint is left out: there the ship is at her berth.
     """
     return [f"{WAITS} {text}: {_ADVICE}" for text in waiting_weather_texts(route, ship)]
+
+
+def heavy_weather_warnings(route: Route, ship: Ship) -> list[str]:
+    """Return a warning where a ship waits at sea in a gale that her limits permit.
+
+    It is for the wait with the highest waves, else the strongest wind. Waits above her limits have
+    warnings of their own (`waiting_weather_warnings`).
+    """
+    if waiting_weather_texts(route, ship):
+        return []
+    waves, wind = route.wait_samples.get(WAVE_HEIGHT), _wind_speed(route)
+    found = []
+    for place, hours, lying in _waits(route):
+        height, speed = (
+            0.0 if one is None else float(np.nanmax(one[lying], initial=0.0))
+            for one in (waves, wind)
+        )
+        if height > _ROUGH or speed >= GALE:
+            found.append((height, speed, hours, place))
+    if not found:
+        return []
+    height, speed, hours, place = max(found)
+    met = [f"waves of up to {height:.1f} m"] if height > 0.0 else []
+    met += [f"wind of up to {speed / KNOT:.0f} kn"] if speed > 0.0 else []
+    more = f" In all she waits in such weather {len(found)} times." if len(found) > 1 else ""
+    return [
+        f"{WAITS} {hours:.1f} h at {format_position(*place)} in {' and '.join(met)}: a ship that "
+        "stops there drifts, or steams against the sea and burns fuel, which is not counted. Plan "
+        "without waits (--no-wait), or give lower limits of waves and wind in the ship file."
+        f"{more}"
+    ]
 
 
 def waiting_weather_texts(route: Route, ship: Ship) -> list[str]:
