@@ -68,6 +68,7 @@ def test_a_ship_too_high_for_the_bridges_of_an_approach_is_stated():
     new_york = next(one for one in PORT_APPROACHES.all if one.label == "New York City, US")
     (note,) = approach_limit_notes(chart, new_york, {"draught": 9.0, "air_draught": 70.0})
     assert "Verrazano Narrows: the air draught of 70 m is over the 65 m allowed" in note
+    assert note.endswith("(general knowledge, unchecked). Ask the port.")  # a light ship is higher
     local = next(one for one in PORT_APPROACHES.all if one.label == "Sortland, NO")
     assert approach_limit_notes(chart, local, {"length": 200.0, "air_draught": 20.0}) == []
 

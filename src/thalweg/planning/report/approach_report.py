@@ -61,9 +61,11 @@ def approach_limit_notes(
     too_small = [(one, one.ship_restriction(**sizes)) for one in limited]
     reasons = {one: reason for one, reason in too_small if reason}
     lat, lon = np.array(approach.line, float).T
+    draught = sizes.get("draught") or 0.0
     return [
         f"{APPROACH_TOO_SMALL}: that of {approach.label} leads through {reasons[one]} "
-        f"({one.source.rpartition(': ')[2]}). Load less, or ask the port."
+        f"({one.source.rpartition(': ')[2]}). "
+        + ("Load less, or ask the port." if draught > one.max_draught else "Ask the port.")
         for _at, one in passages_crossed(chart.coastline, reasons, lat, lon)
     ]
 
