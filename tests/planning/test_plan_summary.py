@@ -122,6 +122,11 @@ def with_bound(answer, certain, kind="certificate"):
             "certificate",
             "little is proved: the least possible time is between 23 and 100 % of this",
         ),
+        (
+            0.963,
+            "certificate, with land, closed shoals",
+            "at most 3.7 % less time is possible in water that is deep enough by the depth layer",
+        ),
         (np.nan, "no bound: the route ends at a pole", "no bound: the route ends at a pole"),
         (0.0, "certificate", "no bound was found"),
     ],

@@ -32,6 +32,7 @@ OpenDisc: TypeAlias = tuple[float, float, float]
 DegreeBox: TypeAlias = tuple[float, float, float, float]
 
 WORLD_BOX: Final[DegreeBox] = (-90.0, 90.0, -180.0, 180.0)
+CLOSED_SHOALS: Final = "closed shoals"  #: how plans and kinds of bounds name them
 _MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
 _SHARE: Final = 0.2
 _CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
@@ -96,7 +97,7 @@ class ClosedShoals:
         open_water = hashlib.sha256(
             repr((self.channels, self.discs, self.box)).encode()
         ).hexdigest()[:16]
-        return f"closed shoals {self.depth} {open_water}"
+        return f"{CLOSED_SHOALS} {self.depth} {open_water}"
 
 
 @lru_cache(maxsize=4)

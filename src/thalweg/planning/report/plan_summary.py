@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from thalweg.chart.depth.closed_shoals import CLOSED_SHOALS
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS, SHIP_RANGE
 from thalweg.planning.plan_front import least_words, not_rising, words_of_points
@@ -39,7 +40,6 @@ MAX_LINES = 12  #: of a summary with its notes
 #: Notes whose contents the summary states in its own lines.
 _STATED = (NO_DEPTH,)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
-CLOSED: Final = "closed shoals"  #: a bound that holds outside shoals has this in its kind
 _WEAK: Final = 0.5  # gap from which a bound says little of a route
 _CLEARLY_LESS: Final = 0.01  # of a gap, for which another one is stated beside it
 #: Of key figures in sentences on how much less of them is possible.
@@ -212,7 +212,9 @@ def quality_text(plan: PlanData) -> str:
             f"{early}little is proved: the least possible {figure} is between {least} and 100 % "
             f"of this{other_speeds}"
         )
-    deep = " in water that is deep enough by the depth layer" if CLOSED in plan.proof.kind else ""
+    deep = ""
+    if CLOSED_SHOALS in plan.proof.kind:
+        deep = " in water that is deep enough by the depth layer"
     bounded = f"{_at_most(plan.gap, figure)}{_at_speeds(plan)}{deep}{_quality_of_front(plan)}"
     return f"{early}{bounded}{other_speeds}"
 

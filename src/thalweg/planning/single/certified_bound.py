@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.chart.depth.closed_shoals import CLOSED_SHOALS
 from thalweg.chart.zones.traffic_schemes import INSHORE
 from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
@@ -325,7 +326,7 @@ def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str
         counted = ["land"] if found.cells else []
         counted += ["the offing"] if found.cells and context.chart.offing.distance > 0.0 else []
         counted += ["no-go zones"] if zones.no_go else []
-        counted += ["closed shoals"] if zones.closed_shoals else []
+        counted += [CLOSED_SHOALS] if zones.closed_shoals else []
         counted += ["canals"] if found.mesh is not None and found.mesh.links else []
     text += f" with {', '.join(counted)}" if counted else ""
     if context.chart.zones.has_penalty:
