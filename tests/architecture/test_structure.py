@@ -29,6 +29,7 @@ MAX_ARGUMENTS = 8  # of a function, without self and cls
 MANY_ARGUMENTS = {
     "network.regional_lattice.lattice_builder.lattice": "public entry point with keyword options",
     "network.triangular_mesh.mesh_builder.mesh": "public entry point with keyword options",
+    "planning.sea_distance.sea_distance": "public entry point with keyword options",
     "route.referee.evaluation.evaluate": "public entry point with keyword options",
     "ship.methods.added_resistance.stawave.stawave2": "parameters of a published formula",
     "ship.methods.added_resistance.stawave.stawave2_transfer": "parameters of a published formula",

@@ -449,6 +449,17 @@ def test_least_fuel_is_that_of_the_plan_also_on_the_way_of_the_fastest(ship, cha
     assert least.route.fuel_t <= 1.05 * alone.routes[-1].fuel_t
 
 
+@pytest.mark.slow
+def test_the_cheapest_alternative_costs_no_more_than_the_plan(ship, chart):
+    """It takes more than half as much again as the fastest: with a price of time it may."""
+    voyage = replace(_voyage(), fuel_price_usd=600.0, time_price_usd_per_h=20.0)
+    found = alternative_plans(voyage, ship=ship, sea=_sea(), chart=chart)
+    least = next(one for one in found.choices if "cheapest" in one.best_in)
+    request = replace(voyage, objective="cost")
+    alone = plan(request, ship=ship, sea=_sea(), chart=chart, proof=0.0)
+    assert least.route.cost <= 1.005 * alone.routes[-1].cost
+
+
 def test_none_is_called_best_in_what_another_candidate_is_better_in():
     values = [{name: 1.0 for name in COMPARED_FIGURES} for _ in range(3)]
     values[0] |= {"time": 9.8, "fuel": 1.46}

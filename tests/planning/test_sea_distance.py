@@ -13,7 +13,7 @@ from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.request.distance_of_ship import distance_options
+from thalweg.planning.request.size_closures import closed_and_open
 from thalweg.planning.sea_distance import small_ship_distance
 from thalweg.planning.seaways import world_chart
 from thalweg.ship import Ship
@@ -376,14 +376,25 @@ def test_the_distance_of_a_ship_has_what_her_size_closes_and_opens(capsys):
 
     coaster = Ship.simple(speed_kn=11.0, draught_m=5.7, length_m=90.0, breadth_m=13.6)
     chart = world_chart()
-    assert distance_options(coaster, chart)["open"] == ("all",)
+    assert closed_and_open(coaster, chart).opened == ("all",)
     usual = answer("--ship", "handysize-bulker")
     assert usual["canals"] == ["Kiel Canal"]
-    deep = distance_options(tall_ship(60.0), chart)
-    assert "kiel" in deep["avoid"] and not deep["open"]
+    deep = closed_and_open(tall_ship(60.0), chart)
+    assert "kiel" in deep.closed and not deep.opened
     without = answer("--ship", "handysize-bulker", "--avoid", "kiel")
     assert without["canals"] == [] and without["distance_nm"] > usual["distance_nm"] + 200.0
     assert answer("--draught", "9.5")["distance_nm"] == pytest.approx(usual["distance_nm"])
+
+
+def test_an_approach_too_low_for_the_ship_is_noted_and_not_called_avoided():
+    found = thalweg.distance("Rotterdam", "New York", ship=tall_ship(75.0))
+    assert "Verrazano Narrows" in found.straits
+    assert not [note for note in found.notes if note.startswith("Not avoided")]
+    (note,) = [note for note in found.notes if note.startswith("The approach is too small")]
+    assert "Verrazano Narrows: the air draught of 75 m is over the 65 m allowed" in note
+    lower = thalweg.distance("Rotterdam", "New York", ship=tall_ship(60.0))
+    assert lower.nm == pytest.approx(found.nm)
+    assert not [note for note in lower.notes if note.startswith("The approach is too small")]
 
 
 def tall_ship(metres):

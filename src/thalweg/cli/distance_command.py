@@ -82,31 +82,22 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.chart.ports import place_positions
 
     place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
-    from thalweg.chart.passages import find_passages
     from thalweg.planning.network_selection.seas_of_distance import USUAL_DEPTH
-    from thalweg.planning.sea_distance import (
-        SMALL_CANALS,
-        sea_distance,
-        small_ship_distance,
-    )
+    from thalweg.planning.sea_distance import sea_distance, small_ship_distance
 
-    of_ship = _options_of_ship(arguments.ship)
-    names = [name for name in arguments.open if name.strip().casefold() != "all"]
-    in_spite = {one.name for one in find_passages(names)}  # of the size of the ship
-    of_ship["avoid"] = tuple(n for n in of_ship.get("avoid", SMALL_CANALS) if n not in in_spite)
-    avoid: tuple[str, ...] = of_ship["avoid"]
-    if arguments.avoid is not None:
-        names = [name for text in arguments.avoid for name in names_in_list(text)]
-        wanted = tuple(name for name in names if name != "none")
-        avoid = (*wanted, *(of_ship["avoid"] if arguments.ship else ()))
+    ship = None
+    if arguments.ship is not None:
+        from thalweg.ship import Ship
+
+        ship = Ship.load(arguments.ship)
     arguments.progress("finding the shortest way")
     ends = arguments.start, arguments.goal
-    draught = of_ship.get("draught_m") if arguments.draught is None else arguments.draught
-    options: dict[str, Any] = {
-        "avoid": avoid, "offing_nm": arguments.offing, "draught_m": draught,
-    }  # fmt: skip
-    opened = tuple(arguments.open) or of_ship.get("open", ())
-    way = sea_distance(*ends, via=arguments.via, open=opened, **options)
+    draught = arguments.draught or (ship.draught if ship else None) or None
+    options: dict[str, Any] = {"offing_nm": arguments.offing, "draught_m": arguments.draught}
+    if arguments.avoid is not None:
+        names = [name for text in arguments.avoid for name in names_in_list(text)]
+        options["avoid"] = tuple(name for name in names if name != "none")
+    way = sea_distance(*ends, via=arguments.via, open=arguments.open, ship=ship, **options)
     days = None if arguments.speed is None else way.days(arguments.speed)
     if arguments.json:
         more = {} if days is None else {"speed_kn": arguments.speed, "days": days}
@@ -123,18 +114,6 @@ def run(arguments: argparse.Namespace) -> int:
             if small is not None:
                 _print_small_ships(way, small)
     return SUCCESS
-
-
-def _options_of_ship(path: str | None) -> dict[str, Any]:
-    """Return the options of the distance for a ship; none without one."""
-    if path is None:
-        return {}
-    from thalweg.planning.request.distance_of_ship import distance_options
-    from thalweg.planning.sea_distance import SMALL_CANALS
-    from thalweg.planning.seaways import world_chart
-    from thalweg.ship import Ship
-
-    return distance_options(Ship.load(path), world_chart(), SMALL_CANALS)
 
 
 def names_in_list(text: str) -> list[str]:

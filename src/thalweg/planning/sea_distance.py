@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canal_parts import first_legs_of_transits, part_number_of_legs
 from thalweg.chart.offing import check_offing
 from thalweg.chart.passage_crossings import names_passed
+from thalweg.chart.passages import find_passages
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
@@ -28,6 +29,7 @@ from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_ov
 from thalweg.planning.report.approach_report import (
     approach_limit_notes,
     port_depth_note,
+    too_small_passages,
     turn_back_notes,
     unknown_depth_text,
 )
@@ -46,6 +48,9 @@ from thalweg.planning.seaways import (
     world_chart,
 )
 from thalweg.planning.voyage_parts import Place
+
+if TYPE_CHECKING:
+    from thalweg.ship import Ship
 
 #: Canals too small for most ships, which are not used by default.
 SMALL_CANALS: Final = ("corinth",)
@@ -151,10 +156,11 @@ def sea_distance(
     goal: Place,
     *,
     via: Sequence[Place] = (),
-    avoid: Sequence[str] = SMALL_CANALS,
+    avoid: Sequence[str] | None = None,
     open: Sequence[str] = (),
     offing_nm: float = DEFAULT_OFFING_NM,
     draught_m: float | None = None,
+    ship: Ship | None = None,
     chart: Chart | None = None,
 ) -> SeaDistance:
     """Return the shortest way by sea between two ports or positions.
@@ -167,8 +173,8 @@ def sea_distance(
         Places to pass, in this order; ports are passed off their sea ends.
     avoid : sequence of str
         Canals and passages that are not used, such as "suez", "Pentland Firth", or "all" for all
-        canals. By default the canal of Corinth, which is 7.2 m deep; give an empty list to use
-        every canal.
+        canals. By default the canal of Corinth, which is 7.2 m deep, unless a ship of known length
+        is given; give an empty list to use every canal.
     open : sequence of str
         Passages for small or local ships that may be used, such as "Canso"; "all" for all of them.
         Others are used in spite of the draught.
@@ -180,6 +186,10 @@ def sea_distance(
         water shallower than one and a half draughts count more, as in plans. By default no draught
         closes them, and miles in water shallower than 5 m count more. The graph is coarse near
         shoals: a note states what is left of them.
+    ship : Ship, optional
+        Her draught counts where ``draught_m`` is not given; canals and passages that are too small
+        for her are closed as well, except those in ``open``; passages for small ships are open
+        where she is shorter than 120 m; notes say which approaches are too small for her.
     chart : Chart, optional
         By default the GSHHG coastline at resolution "i".
 
@@ -204,15 +214,27 @@ def sea_distance(
     """
     chart = world_chart() if chart is None else chart
     check_offing(offing_nm)
-    closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
     ends = resolve_places(start, via, goal, chart)
+    sizes: dict[str, float | None] = {"draught": None}
+    asked = (avoid,) if isinstance(avoid, str) else tuple(avoid or ())
+    closed = SMALL_CANALS if avoid is None else asked
     opened = opened_names(chart, open)
-    found = [_way_over_seas(chart, ends, closed, opened, offing_nm * NAUTICAL_MILE, draught_m)]
+    if ship is not None:
+        from thalweg.planning.request.offing_choice import ship_dimensions  # loads ship files
+        from thalweg.planning.request.size_closures import closed_and_open
+
+        sizes = ship_dimensions(ship)
+        of_ship = closed_and_open(ship, chart, SMALL_CANALS)
+        in_spite = {one.name for one in find_passages(opened)}
+        closed = (*asked, *(name for name in of_ship.closed if name not in in_spite))
+        opened = opened or opened_names(chart, of_ship.opened)
+    if draught_m is not None:
+        sizes["draught"] = draught_m
+    offing = offing_nm * NAUTICAL_MILE
+    found = [_way_over_seas(chart, ends, closed, opened, offing, sizes)]
     if opened:  # never longer than without: the graph with these passages is another one
         with contextlib.suppress(NoRouteError):
-            found.append(
-                _way_over_seas(chart, ends, closed, (), offing_nm * NAUTICAL_MILE, draught_m)
-            )
+            found.append(_way_over_seas(chart, ends, closed, (), offing, sizes))
     return min(found, key=lambda way: way.length)
 
 
@@ -222,9 +244,10 @@ def _way_over_seas(
     closed: Sequence[str],
     opened: Sequence[str],
     offing: float,
-    draught: float | None,
+    sizes: Mapping[str, float | None],
 ) -> SeaDistance:
-    """Return the shortest way with some passages for small ships open; offing and draught [m]."""
+    """Return the shortest way with some passages open; offing and sizes of the ship [m]."""
+    draught = sizes["draught"]
     seas, every = seas_and_every(chart, ends, closed, opened, draught)
     try:
         way = way_over_seas(seas, ends, draught=draught, offing=offing)
@@ -233,12 +256,12 @@ def _way_over_seas(
         named = closed_way_error(seas, chosen, {"draught": draught, "length": 0.0}, opens=False)
         raise named or error from None
     notes = tuple(end.note for end in way.ends if end.note)
-    if draught is not None:
-        texts = []
-        for one in way.approaches:
+    texts = []
+    for one in way.approaches:
+        if draught is not None:
             texts.append(port_depth_note(one, draught) or unknown_depth_text(one, draught).strip())
-            texts += approach_limit_notes(chart, one, {"draught": draught})
-        notes += tuple(dict.fromkeys(filter(None, texts)))
+        texts += approach_limit_notes(chart, one, sizes)
+    notes += tuple(dict.fromkeys(filter(None, texts)))
     names = ends[0].name, ends[-1].name
     if not way.at_sea:  # the approaches meet
         between = " to ".join(approach.port.label for approach in way.approaches)
@@ -259,8 +282,8 @@ def _way_over_seas(
         canals = path_length_and_canals(chart, way.at_sea)[1]
     lat, lon = np.array(way.line, float).T
     straits = names_passed(chart.coastline, chart.passages, lat, lon)
-    small = {one.name for one in chart.passages if draught and one.max_draught < draught}
-    straits_to_use = [name for name in straits if name not in small]  # those have their own note
+    own_note = {one.name for one in too_small_passages(chart, sizes)}
+    straits_to_use = [name for name in straits if name not in own_note]
     notes += avoided_on_approach_notes(every, straits_to_use, way.approaches)
     first, last = way.ends[0].approach, way.ends[-1].approach
     joints = [len(first.line) - 1] if first else []
@@ -320,7 +343,8 @@ def small_ship_distance(
     over_graph = partial(way_over_seas, ends=ends, draught=draught_m, offing=None)
     if over_graph(more).length > (1.0 - _LEAST_OVER_GRAPH) * over_graph(usual).length:
         return None
-    small = _way_over_seas(chart, ends, closed, opened, offing_nm * NAUTICAL_MILE, draught_m)
+    sizes = {"draught": draught_m}
+    small = _way_over_seas(chart, ends, closed, opened, offing_nm * NAUTICAL_MILE, sizes)
     return small if small.length <= (1.0 - _LEAST_SHORTER) * way.length else None
 
 

@@ -139,9 +139,9 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 
     Parameters
     ----------
-    ship : With a ship, canals have its dues, and legs along approaches of the chart are included:
-        they are sailed at `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if
-        that is lower.
+    ship : With a ship, canals have its dues, and legs along approaches of the chart are included,
+        from the ends of the track on or where other water is land: they are sailed at
+        `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if that is lower.
     """
     none = np.full(len(track) - 1, -1, np.int64)
     legs = CanalLegs(none, (), none < -1)
@@ -157,7 +157,7 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
 def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship) -> CanalLegs:
     """Return the legs with those along approaches added."""
     assert chart.approaches is not None  # by the caller
-    along = chart.approaches.legs(track.lat, track.lon)
+    along = _needed_along_approaches(track, chart)
     part = part_number_of_legs(chart.canals, track.lat, track.lon)
     if (part >= 0).any():
         line = np.stack([track.lat, track.lon], axis=1)
@@ -175,6 +175,22 @@ def _with_approach_legs(legs: CanalLegs, track: Track, chart: Chart, ship: Ship)
         for k in found
     ]
     return _with_more_legs(legs, found, more)
+
+
+def _needed_along_approaches(track: Track, chart: Chart) -> NDArray[np.bool_]:
+    """Return which legs run along approaches that the track needs.
+
+    These are those from its ends on, and on the way those over land of the chart: in open water a
+    ship that passes a port, as in the Elbe after the Kiel Canal, keeps her speed.
+    """
+    assert chart.approaches is not None  # by the caller
+    along = chart.approaches.legs(track.lat, track.lon)
+    at_ends = np.logical_and.accumulate(along) | np.logical_and.accumulate(along[::-1])[::-1]
+    k = np.flatnonzero(along & ~at_ends)
+    if len(k):
+        legs = track.lat[k], track.lon[k], track.lat[k + 1], track.lon[k + 1]
+        along[k] = chart.legs_blocked(*legs)
+    return along
 
 
 def _with_canal_parts(legs: CanalLegs, track: Track) -> CanalLegs:

@@ -262,14 +262,15 @@ def _in_processes(chunks: list[Chunk], folder: str, workers: int) -> Iterator[li
                 else:
                     yield _refused(one)
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-            _stop(pool)
+            _stop(pool, at_once=bool(waiting or running))
 
 
-def _stop(pool: ProcessPoolExecutor) -> None:
-    """End the processes of a pool: after Ctrl-C no row goes on."""
-    for process in list((pool._processes or {}).values()):
-        process.terminate()
+def _stop(pool: ProcessPoolExecutor, *, at_once: bool) -> None:
+    """End the processes of a pool, and its thread; at once: after Ctrl-C no row goes on."""
+    if at_once:
+        for process in list((pool._processes or {}).values()):
+            process.terminate()
+    pool.shutdown(wait=True, cancel_futures=True)  # else its thread may fail as Python ends
 
 
 def _refused(chunk: Chunk) -> list[dict[str, Any]]:

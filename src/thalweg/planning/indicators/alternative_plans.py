@@ -201,10 +201,11 @@ def alternative_plans(
 
     Notes
     -----
-    Candidates are the fastest route, refined in open water; the best of the network in fuel,
-    comfort, encounters, length near land and distance, as far as they are known for this ship and
-    chart, the knees of their fronts with time, and the best by a weighted sum; and at the speed of
-    the fastest route the shortest ways round islands, by and round named passages and farther off
+    Candidates are the fastest route, refined in open water; the best of the network in cost,
+    fuel, comfort, encounters, length near land and distance, as far as they are known for this
+    ship and chart (for cost and fuel also the fastest route at one lower speed), the knees of
+    their fronts with time, and the best by a weighted sum; and at the speed of the fastest route
+    the shortest ways round islands, by and round named passages and farther off
     land, straightened. All share one network and one sea for each set of open canals. Chosen are
     the best in one figure after the other that differ from those chosen before, in water or time,
     and the fastest without each canal of the fastest route, however long it takes. Notes say why a

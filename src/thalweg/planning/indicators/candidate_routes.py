@@ -1,42 +1,31 @@
 """Candidates for alternatives of a voyage, all on the networks and the frozen sea of one trade-off.
 
-The key figures are minimised on one network in the weather. Ways round islands, by and round named
-passages and farther off land are its shortest paths (round islands those of a network of all water
-between the ends), straightened as far as land allows, at the fastest route's speed. A mile in
-shoals, penalty zones and against lanes counts more in all of them, as in plans; ways that run
-farther against lanes than the fastest route by any canals are left out.
+The key figures are minimised on one network in the weather; in fuel and cost, the fastest route at
+one lower speed competes. Others are ways that differ (`OtherWays`). Ways that run farther against
+lanes than the fastest route by any canals are left out.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
-from operator import itemgetter
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thalweg.chart import Chart
-from thalweg.chart.passage_crossings import legs_through, names_passed
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.interrupt import SearchInterrupted
 from thalweg.core.limits import NETWORK_STEPS, TIGHTENING
 from thalweg.core.objective import Objective
-from thalweg.core.types import FloatArray
-from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network import Network, alternative_paths
-from thalweg.network.alternatives.alternative_path import EdgeWeights
-from thalweg.network.alternatives.path_shortening import string_pull_path
-from thalweg.network.assembly import allowed_legs
-from thalweg.network.shortest_paths import ShortestPathTree, reversed_graph, shortest_path_tree
+from thalweg.network import Network
 from thalweg.planning.approach_sailing import (
     ApproachSailing,
     SailedApproaches,
     plan_along_approaches,
     shared_line,
 )
-from thalweg.planning.indicators.passage_ways import way_by_passage
+from thalweg.planning.indicators.other_ways import OtherWays
 from thalweg.planning.indicators.ways_not_offered import canal_notes
 from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
@@ -60,21 +49,16 @@ from thalweg.planning.pareto.weighted_sums import (
 from thalweg.planning.plan_front import knee
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.lane_report import lane_detour_notes, routes_within_lanes
-from thalweg.planning.request.offing_choice import chart_off_land, chosen_offing
+from thalweg.planning.request.offing_choice import chosen_offing
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route, Track
-from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.ship.comfort.onboard_motions import required_motions
 
 STOPPED: Final = "Stopped"  #: first word of notes after Ctrl-C
-_OBJECTIVES: Final = ("fuel", "comfort", "encounters", "inshore", "distance")
+_OBJECTIVES: Final = ("cost", "fuel", "comfort", "encounters", "inshore", "distance")
+_REFINED: Final = ("cost", "fuel")  # in open water
 _WEIGHTED: Final = ("time", "fuel", "comfort", "encounters")
-#: Offings of the route farther off land, tried in turn: at least [nm], and times the voyage's own.
-_WIDER_OFFINGS: Final = ((4.0, 2.0), (3.0, 1.5), (2.0, 1.25))
-_DETOUR: Final = 0.35  # ways that are longer by this share of the shortest are left out
 _LONGER: Final = 1.5  # times the time of the fastest, without a time of arrival
-_BACK: Final = np.radians(120.0)  # larger turns in a passage lead back out of it
-_ISLAND_WAYS, _PASSAGE_WAYS, _ROUNDS = 3, 5, 3  # rounds of string pulling
 
 
 def berth_to_berth_candidates(
@@ -154,15 +138,16 @@ def candidate_routes(
     search = _Candidates(trade_off)
     first = search.fastest(alternatives[0])
     all_ways = network_of_all_ways(alternatives[0], search.context.chart, trade_off.ends)
+    ways = OtherWays(trade_off, search.best["time"])
     steps: list[tuple[str, Iterator[Track]]] = [
         (f"for {name}", search.of_least(first.network, name)) for name in _OBJECTIVES
     ]
     steps += [
         ("of a weighted sum", search.of_weighted_sum(first.network)),
-        ("round islands", search.round_islands(all_ways)),
-        ("farther off land", search.farther_off_land(first.network)),
-        ("by passages", search.by_passages(first.network)),
-        ("round passages", search.round_passages(first.network)),
+        ("round islands", ways.round_islands(all_ways)),
+        ("farther off land", ways.farther_off_land(first.network)),
+        ("by passages", ways.by_passages(first.network)),
+        ("round passages", ways.round_passages(first.network)),
     ]
     for words, tracks in steps:
         search.add(words, tracks)
@@ -170,7 +155,7 @@ def candidate_routes(
         if not search.stopped:
             search.try_alternative(other)
     search.notes += lane_detour_notes(search.context.chart, [first.network])
-    in_time = [route for route in search.routes if search.is_in_time(route.arrive - route.depart)]
+    in_time = [route for route in search.routes if search.is_in_time(route)]
     standards = [route for route in search.fastest_routes if route in in_time]
     kept, note = routes_within_lanes(search.context.chart, in_time, standards)
     kept += [route for route in search.fastest_routes if route not in in_time]
@@ -195,11 +180,16 @@ class _Candidates:
     def stopped(self) -> bool:
         return self.trade_off.interrupt_guard.stopped()
 
-    def is_in_time(self, seconds: float) -> bool:
-        """Return whether a way takes at most half as much again as the fastest, if none is set."""
+    @property
+    def longest(self) -> float:
+        """Time [s] that ways take at most: half as much again as the fastest, if none is set."""
         fastest = self.best["time"]
-        longest = _LONGER * (fastest.arrive - fastest.depart)
-        return self.context.voyage.arrive_by is not None or not seconds > longest
+        free = self.context.voyage.arrive_by is not None
+        return math.inf if free else _LONGER * (fastest.arrive - fastest.depart)
+
+    def is_in_time(self, route: Route) -> bool:
+        """Return whether a route is not longer in time; that of least cost may be, at a price."""
+        return route is self.best.get("cost") or not route.arrive - route.depart > self.longest
 
     def fastest(self, alternative: RouteAlternative) -> RouteAlternative:
         """Add the fastest route of an alternative; return it without water that has no data."""
@@ -245,10 +235,32 @@ class _Candidates:
             return
         if name == "comfort" and key_figure(self.best["time"], name) == 0.0:  # flat calm
             return
-        tracks = self._front(network, Objective.of(name, currency=self.currency))
-        self.best[name] = self._scored(tracks[0])
+        objective = Objective.of(name, currency=self.currency)
+        tracks = self._front(network, objective)
+        found = [self._scored(tracks[0])]
+        if name in _REFINED:
+            found += self._fastest_way_at_one_speed(self._longest_of(objective))
+        self.best[name] = min(found, key=objective.value)
         self.routes.append(self.best[name])
         yield from tracks[1:]
+
+    def _fastest_way_at_one_speed(self, longest: float) -> list[Route]:
+        """Return the fastest route at each lower setting that keeps the limits in a time [s]."""
+        track = self.best["time"].track
+        found = [
+            self.context.evaluate(
+                replace(track, setting=np.full(len(track) - 1, setting)), self.terms
+            )
+            for setting in self.trade_off.settings
+            if not np.any(track.wait > 0.0)  # made for the times of the fastest
+        ]
+        latest = min(self.context.latest_arrival, track.depart + longest)
+        return [route for route in found if route.feasible and route.arrive <= latest]
+
+    def _longest_of(self, objective: Objective) -> float:
+        """Return the time that ways take at most [s]: none where it is a part of the cost."""
+        priced = objective.name == "cost" and self.terms.time_price > 0.0
+        return math.inf if priced else self.longest
 
     def of_weighted_sum(self, network: Network) -> Iterator[Track]:
         """Yield the route of the least sum of key figures, each over its range."""
@@ -266,7 +278,8 @@ class _Candidates:
         own = with_objective(self.trade_off, objective)
         horizon = extend_horizon(own, network, self.paths)
         front = network_pareto_front(own, network, horizon.frozen, horizon.latest)
-        points = [point for point in front.points if self.is_in_time(point.time)]
+        longest = self._longest_of(objective)
+        points = [point for point in front.points if not point.time > longest]
         points.sort(key=lambda point: point.time)
         if not points:
             why = " and ".join(front.refused) or "too late for the period of the data"
@@ -281,111 +294,5 @@ class _Candidates:
         chosen = [cheapest] if len(points) < 3 else [cheapest, points[middle]]
         tracks = [(track_from_front_point(network, point), point.time) for point in chosen]
         scored = (scored_with_fewer_turns(own, track, time) for track, time in tracks)
-        refined = objective.name == "fuel" and may_leave_nodes(own)
+        refined = objective.name in _REFINED and may_leave_nodes(own)
         return [(refined_in_open_water(own, r) if refined else r).track for r in scored]
-
-    def round_islands(self, network: Network) -> Iterator[Track]:
-        """Yield the shortest ways on the other sides of islands."""
-        for path in alternative_paths(
-            network,
-            self.context.chart,
-            edge_weight_sets=(self._weights(network),),
-            most=_ISLAND_WAYS,
-            stretch=_DETOUR,
-        )[1:]:
-            yield self._at_full_speed(*np.array(path.waypoints, float).T)
-
-    def farther_off_land(self, network: Network) -> Iterator[Track]:
-        """Yield the shortest way with the widest offing that joins the ends."""
-        chart, ends = self.context.chart, self.trade_off.ends
-        edges = network.lat, network.lon, network.tails(), network.graph.target
-        fixed, own = np.isfinite(network.edges.fixed_time), self.trade_off.limits.offing
-        for least, times in _WIDER_OFFINGS:
-            wider = max(least * NAUTICAL_MILE, times * own)
-            off_land = chart_off_land(chart, ends, wider)
-            weight = self._open(network, allowed_legs(off_land, *edges)[0] | fixed)
-            tree = shortest_path_tree(network.graph, weight, network.meta.start)
-            path = tree.path(network.meta.goal)
-            if path:
-                yield self._pulled(network, off_land, path)
-                return
-        raise NoRouteError(
-            "the ends cannot be joined farther off land.",
-            "The network has no such path.",
-            "Give a wider offing to plan for it.",
-            reasons={},
-        )
-
-    def round_passages(self, network: Network) -> Iterator[Track]:
-        """Yield the shortest way without each passage of the fastest route."""
-        chart, through = self.context.chart, self._through(network)
-        shortest = self._trees(network)[0].distance[network.meta.goal]
-        for name in self._passed(network, through)[:_PASSAGE_WAYS]:
-            weight = self._open(network, ~through[name])
-            tree = shortest_path_tree(network.graph, weight, network.meta.start)
-            path = tree.path(network.meta.goal)
-            if path and tree.distance[network.meta.goal] <= (1.0 + _DETOUR) * shortest:
-                yield self._pulled(network, chart.without_passages(name), path)
-
-    def by_passages(self, network: Network) -> Iterator[Track]:
-        """Yield the shortest ways by the passages that the fastest route does not pass."""
-        chart, track = self.context.chart, self.best["time"].track
-        passed = set(names_passed(chart.coastline, chart.passages, track.lat, track.lon))
-        trees = self._trees(network)
-        longest = (1.0 + _DETOUR) * trees[0].distance[network.meta.goal]
-        others = [passage for passage in chart.passages if passage.name not in passed]
-        ways = [way_by_passage(chart, network, passage, trees) for passage in others]
-        found = sorted((way for way in ways if way and way.length <= longest), key=itemgetter(0))
-        cost = self._weights(network).leg_cost
-        for way in found[:_PASSAGE_WAYS]:
-            parts = [
-                string_pull_path(chart, *line, leg_cost=cost, rounds=_ROUNDS)
-                for line in (way.before, way.after)
-            ]
-            lat, lon = (np.concatenate([parts[0][k], parts[1][k][1:]]) for k in (0, 1))
-            if abs(course_changes(lat, lon)[len(parts[0][0]) - 2]) < _BACK:  # else not through it
-                yield self._at_full_speed(lat, lon)
-
-    def _trees(self, network: Network) -> tuple[ShortestPathTree, ShortestPathTree]:
-        """Return the trees of shortest paths from the start and to the goal."""
-        graph, edge = reversed_graph(network)
-        weight = self._open(network, np.ones(network.n_edges, bool))
-        return (
-            shortest_path_tree(network.graph, weight, network.meta.start),
-            shortest_path_tree(graph, weight[edge], network.meta.goal),
-        )
-
-    def _weights(self, network: Network) -> EdgeWeights:
-        """Return the weights of ways: a mile counts more where it does so in plans."""
-        return EdgeWeights.penalised(network, self.context.chart)
-
-    def _open(self, network: Network, keep: NDArray[np.bool_]) -> FloatArray:
-        """Return the weights of the edges of a network, infinite where they are closed."""
-        return np.where(keep, np.asarray(self._weights(network).weight), np.inf)
-
-    def _through(self, network: Network) -> dict[str, NDArray[np.bool_]]:
-        """Return which edges lead through each passage, by its name."""
-        chart, tails, heads = self.context.chart, network.tails(), network.graph.target
-        legs = network.lat[tails], network.lon[tails], network.lat[heads], network.lon[heads]
-        return legs_through(chart.coastline, chart.passages, legs)
-
-    def _passed(self, network: Network, through: dict[str, NDArray[np.bool_]]) -> list[str]:
-        """Return the passages of the fastest route among some."""
-        chart, track = self.context.chart, self.best["time"].track
-        lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)
-        names = names_passed(chart.coastline, chart.passages, lat, lon)
-        return [name for name in names if name in through]
-
-    def _pulled(self, network: Network, chart: Chart, path: list[int]) -> Track:
-        """Return a path of the network, straightened on a chart."""
-        cost = self._weights(network).leg_cost
-        lat, lon = network.lat[path], network.lon[path]
-        return self._at_full_speed(
-            *string_pull_path(chart, lat, lon, leg_cost=cost, rounds=_ROUNDS)
-        )
-
-    def _at_full_speed(self, lat: FloatArray, lon: FloatArray) -> Track:
-        """Return a line as a track with the departure and the speed of the fastest route."""
-        track = self.best["time"].track
-        setting = int(np.max(track.setting))
-        return Track(lat, lon, self.best["time"].depart, setting=np.full(len(lat) - 1, setting))

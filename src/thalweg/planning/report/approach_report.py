@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.passage_crossings import passages_crossed
+from thalweg.chart.passages import Passage
 from thalweg.core.geodesy import format_position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -56,10 +57,7 @@ def approach_limit_notes(
     sizes : Draught, beam, length and air draught of the ship [m], those that are known, by the
         names of `thalweg.chart.passages.Passage.ship_restriction`.
     """
-    every = (*chart.passages, *chart.closed_passages)  # the size of a ship may have closed it
-    limited = [replace(one, use="trade") for one in every if one.limits]
-    too_small = [(one, one.ship_restriction(**sizes)) for one in limited]
-    reasons = {one: reason for one, reason in too_small if reason}
+    reasons = too_small_passages(chart, sizes)
     lat, lon = np.array(approach.line, float).T
     draught = sizes.get("draught") or 0.0
     return [
@@ -68,6 +66,19 @@ def approach_limit_notes(
         + ("Load less, or ask the port." if draught > one.max_draught else "Ask the port.")
         for _at, one in passages_crossed(chart.coastline, reasons, lat, lon)
     ]
+
+
+def too_small_passages(chart: Chart, sizes: Mapping[str, float | None]) -> dict[Passage, str]:
+    """Return the named passages that are too small for a ship, and why, whoever uses them.
+
+    Parameters
+    ----------
+    chart, sizes : As of `approach_limit_notes`.
+    """
+    every = (*chart.passages, *chart.closed_passages)  # the size of a ship may have closed it
+    limited = [replace(one, use="trade") for one in every if one.limits]
+    too_small = [(one, one.ship_restriction(**sizes)) for one in limited]
+    return {one: reason for one, reason in too_small if reason}
 
 
 def unknown_depth_text(approach: PortApproach, draught: float) -> str:
