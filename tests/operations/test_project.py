@@ -45,7 +45,9 @@ from thalweg.operations.examples.estuary import bed_depth
 from thalweg.operations.plots import draw_routes
 from thalweg.operations.plots.project_plots import _draw_load_factors
 from thalweg.operations.result_files import write_project_files
+from thalweg.planning.report.squat_report import least_water_with_squat
 from thalweg.route import evaluate
+from thalweg.ship.methods.shallow_water.barrass_squat import barrass_squat
 
 WEEK = 604800.0
 
@@ -107,6 +109,37 @@ def test_the_least_clearance_is_unknown_where_that_of_a_leg_is(result):
     cycles[1] = replace(cycles[1], back=SailedLeg(blind, 0.0))
     run = summarise_run("x", cycles, project=result.project, ship=result.environment.ship)
     assert run.totals["least_clearance_m"] is None
+
+
+def test_squat_of_a_ship_whose_limits_do_not_count_it_is_stated(result):
+    """A hopper dredger had 0.8 m under the keel at rest, and -0.3 m at her speed in the gully."""
+    cycles = [
+        replace(cycle, out=replace(cycle.out, clearance_with_squat=left))
+        for cycle, left in zip(result.optimised.cycles, (1.4, -0.26, 0.5))
+    ]
+    given = {"project": result.project, "ship": result.environment.ship}
+    run = summarise_run("optimised", cycles, **given, required=0.8)
+    assert run.totals["least_clearance_with_squat_m"] == pytest.approx(-0.26)
+    (note,) = run.notes
+    legs = 2 * len(cycles)
+    assert note.startswith(
+        f"The clearance is that at rest: with squat, the ship is 0.3 m too deep on 2 of {legs} "
+        "legs (optimised), less than the 0.8 m required."
+    )
+    assert summarise_run("optimised", cycles[:1], **given, required=0.8).notes == ()
+
+
+def test_the_clearance_with_squat_is_below_that_at_rest_by_barrass(result):
+    hull = {"length_between_perpendiculars_m": 80.0, "breadth_m": 16.0, "block_coefficient": 0.8}
+    known = Ship.from_dict(
+        {"name": "hopper", "hull": {**hull, "draught_m": 5.0}, "speeds_kn": [10.0]}
+    )
+    leg = result.optimised.cycles[0].out.route
+    least = least_water_with_squat(leg, known)
+    speed, depth = (leg.samples[name][least.sample] for name in ("speed_through_water", "depth"))
+    sunk = barrass_squat(speed, depth, block_coefficient=0.8, breadth=16.0, draught=5.0)
+    assert least.squat == pytest.approx(float(sunk), rel=0.05)
+    assert least.clearance == pytest.approx(depth - 5.0 - least.squat)
 
 
 @pytest.mark.slow

@@ -79,3 +79,19 @@ def test_the_first_example_of_the_readme_has_no_note_on_danger(capsys):
     command = re.search(r"^thalweg (plan .*) --out out$", readme, re.MULTILINE)[1]
     assert main([*command.split(), "--json"]) == 0
     assert count_of_dangers(json.loads(capsys.readouterr().out)["notes"]) == 0
+
+
+def test_bridges_over_an_approach_are_compared_with_the_air_draught():
+    chart = world_chart()
+    baltimore = next(one for one in PORT_APPROACHES.all if one.label == "Baltimore, US")
+    (note,) = approach_limit_notes(chart, baltimore, {"draught": 9.0, "air_draught": 60.0})
+    assert note.startswith(
+        "The approach is too small: that of Baltimore, US leads under Chesapeake Bay Bridge: the "
+        "air draught of 60 m is over its clearance of 56.7 m (general knowledge, unchecked)."
+    )
+    assert count_of_dangers([note]) == 1
+    assert approach_limit_notes(chart, baltimore, {"draught": 9.0, "air_draught": 50.0}) == []
+    (note,) = approach_limit_notes(chart, baltimore, {"draught": 9.0})
+    assert note.startswith(
+        "Bridges over the approach of Baltimore, US: Chesapeake Bay Bridge (56.7"
+    )

@@ -12,7 +12,9 @@ from thalweg.cli.tables import _print_details
 from thalweg.core.geodesy import format_position_minutes, parse_position
 from thalweg.core.time import duration_text, utc_text
 from thalweg.planning.plan_front import ParetoFront
+from thalweg.planning.report.approach_report import APPROACH_TOO_SMALL
 from thalweg.planning.report.filled_weather import wave_shares
+from thalweg.planning.report.lane_report import AGAINST_TRAFFIC
 from thalweg.planning.report.note_order import notes_of_routes
 from thalweg.planning.report.plan_summary import (
     MAX_LINES,
@@ -386,6 +388,26 @@ def test_kept_limits_are_those_at_rest_where_squat_takes_the_clearance():
     assert told == "all kept at rest, NOT with squat: see the note on the clearance"
     both = kept_text(deep, None, (squat, "Waits at sea 2 h"))
     assert both.startswith("all kept under way, see the note on the wait; at rest, NOT with squat")
+
+
+def test_what_the_referee_does_not_check_is_named_beside_kept_limits():
+    """An office that reads this line alone passed a route over the Goodwin Sands, and one that ran
+    38 nm against the lane of the Dover Strait."""
+    unknown = SimpleNamespace(min_ukc_m=None)
+    sands = kept_text(unknown, None, ("Crosses Goodwin Sands (charted as shoal area; known).",))
+    assert sands == (
+        "kept: land, zones; depth under the keel TO BE CHECKED: the route crosses a charted shoal, "
+        "see the note"
+    )
+    against = f"{AGAINST_TRAFFIC} of Dover Strait for about 38 nm"
+    assert kept_text(unknown, None, (against,)).endswith(
+        "NOT checked; SEE THE NOTES on traffic lanes"
+    )
+    small = f"{APPROACH_TOO_SMALL}: that of Baltimore, US"
+    both = kept_text(SimpleNamespace(min_ukc_m=2.0), None, (against, small))
+    assert both == (
+        "all kept; SEE THE NOTES on traffic lanes, the size of the ship in a port or passage"
+    )
 
 
 def test_kept_limits_name_safety_and_comfort_in_waves():

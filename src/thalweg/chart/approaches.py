@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.approach_branches import approach_branches
-from thalweg.chart.port_draughts import port_draughts
+from thalweg.chart.port_limits.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.arrays.numbered_parts import numbered_parts
@@ -63,7 +63,7 @@ class PortApproach:
         Least distance from the charted part of the line to land [m]; NaN if none is charted.
     quality : "computed", "by hand" or "checked" (by hand and compared with a source).
     max_draught, max_length : Of ships, in the World Port Index [m]; NaN where unknown.
-    draught_source : Of the draught, where `thalweg.chart.port_draughts` replaces the index.
+    draught_source : Of the draught, where `port_limits.port_draughts` replaces the index.
     way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
     canal : Name of the canal that the line leads to, or empty.
     way_draught : Largest draught of ships that use this way [m]; inf without a limit.

@@ -45,7 +45,7 @@ def passages_crossed(
     found = []
     for passage in passages:
         if _is_near(passage, y, x):
-            at = _crossing(y, x, *closing_line(coastline, passage))
+            at = crossing_place(y, x, *closing_line(coastline, passage))
             if at is not None:
                 found.append((at, passage))
     return sorted(found, key=lambda pair: pair[0])
@@ -63,7 +63,7 @@ def names_passed(
     named = [(at, passage.name) for at, passage in passages_crossed(coastline, passages, lat, lon)]
     y, x, _leg = densify(lat, lon, _STEP)
     for name, line in CAPES.items():
-        at = _crossing(y, x, *line)
+        at = crossing_place(y, x, *line)
         if at is not None:
             named.append((at, name))
     return tuple(name for _, name in sorted(named))
@@ -109,8 +109,18 @@ def legs_through(
     return found
 
 
-def _crossing(lat: FloatArray, lon: FloatArray, a: Any, b: Any) -> float | None:
-    """Return where a line crosses that from a to b [piece], or None; all pieces are short."""
+def crossing_place(lat: FloatArray, lon: FloatArray, a: Any, b: Any) -> float | None:
+    """Return where a line crosses that from a to b, or None; all pieces are short.
+
+    Parameters
+    ----------
+    lat, lon : Positions of the line [deg].
+    a, b : Ends (lat, lon) of the other one [deg].
+
+    Returns
+    -------
+    float or None : Number of the piece, and the share of it before the crossing.
+    """
     crossed, share = _pieces_across(lat, lon, a, b)
     hit = np.flatnonzero(crossed)
     return None if not len(hit) else int(hit[0]) + float(share[hit[0]])

@@ -28,10 +28,13 @@ class SailedLeg:
     ----------
     route : As evaluated by the referee.
     energy : Brake energy, without hotel load [J]; NaN if the ship's power is unknown.
+    clearance_with_squat : Least under-keel clearance, squat taken off [m]; NaN where no depth is
+        known, and for ships whose squat limits their speed.
     """
 
     route: Route
     energy: float
+    clearance_with_squat: float = math.nan
 
     @property
     def depart(self) -> float:

@@ -16,14 +16,16 @@ from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.file_writing import write_text
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import DAY, TONNE
-from thalweg.operations.dredging.cycle_records import DredgingCycle, cycle_record
+from thalweg.operations.dredging.cycle_records import DredgingCycle, SailedLeg, cycle_record
 from thalweg.operations.dredging.project import Project
+from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED, water_left_text
 from thalweg.ship import Ship
 
 if TYPE_CHECKING:
     from thalweg.operations.dredging.project_environment import ProjectEnvironment
 
 WEEK = 7.0 * DAY
+_ROUNDING = 0.005  # clearances are written to so much [m]
 
 #: Rows of the table: key, label, format.
 TABLE_ROWS = (
@@ -38,6 +40,7 @@ TABLE_ROWS = (
     ("sailing_empty_share", "time sailing empty", lambda v: f"{100 * v:.0f} %"),
     ("waiting_share", "of which waiting", lambda v: f"{100 * v:.1f} %"),
     ("least_clearance_m", "least clearance [m]", lambda v: f"{v:.2f}"),
+    ("least_clearance_with_squat_m", "least clearance with squat [m]", lambda v: f"{v:.2f}"),
     ("energy_gj", "energy [GJ]", lambda v: f"{v:,.0f}"),
     ("hotel_gj", "of which hotel load [GJ]", lambda v: f"{v:,.0f}"),
     ("fuel_t", "fuel [t]", lambda v: f"{v:,.1f}"),
@@ -182,9 +185,15 @@ def summarise_run(
     *,
     project: Project,
     ship: Ship,
+    required: float = 0.0,
     notes: tuple[str, ...] = (),
 ) -> ProjectRun:
-    """Return a run with the totals of its cycles."""
+    """Return a run with the totals of its cycles.
+
+    Parameters
+    ----------
+    required : Least clearance under the keel [m].
+    """
     duration = cycles[-1].end - cycles[0].start
     legs = [leg for cycle in cycles for leg in cycle.legs]
     volume = sum(cycle.volume for cycle in cycles)
@@ -204,12 +213,31 @@ def summarise_run(
         "mean_load_factor": volume / (len(cycles) * project.work.hopper),
         **{key: value / duration for key, value in shares.items()},
         "least_clearance_m": finite_or_none(float(np.min([leg.clearance for leg in legs]))),
+        "least_clearance_with_squat_m": finite_or_none(
+            float(np.fmin.reduce([leg.clearance_with_squat for leg in legs]))
+        ),
         **_energy_and_fuel(cycles, project, ship),
     }
     broken = sum(not leg.route.feasible for leg in legs)
     if broken:
         notes += (f"The referee finds a limit broken on {broken} of {len(legs)} legs.",)
+    notes += _squat_notes(name, legs, required)
     return ProjectRun(name, tuple(cycles), MappingProxyType(totals), notes)
+
+
+def _squat_notes(name: str, legs: list[SailedLeg], required: float) -> tuple[str, ...]:
+    """Return a note where squat takes the clearance below the required one [m]."""
+    left = [leg.clearance_with_squat for leg in legs]
+    short = sum(clearance < required - _ROUNDING for clearance in left)
+    if not short:
+        return ()
+    least = (f", less than the {required:g} m required" if required > 0.0 else "") + "."
+    return (
+        f"{SQUAT_UNCOUNTED}: with squat, {water_left_text(float(np.fmin.reduce(left)))} on "
+        f"{short} of {len(legs)} legs ({name}){least} The production is that of a ship that does "
+        "not squat. Give 'models: {squat: barrass_2004}' in the ship file, and she goes slower or waits "
+        "there; or ask for more clearance (min_ukc_m).",
+    )
 
 
 def _energy_and_fuel(cycles: list[DredgingCycle], project: Project, ship: Ship) -> dict[str, Any]:

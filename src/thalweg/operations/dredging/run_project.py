@@ -194,7 +194,10 @@ def _simulate_run(
     if impassable:
         notes = (f"Load factors above {max(possible):g} have no route at any tide.",)
     cycles = simulator.run()
-    return summarise_run(name, cycles, project=project, ship=environment.ship, notes=notes)
+    return summarise_run(
+        name, cycles, project=project, ship=environment.ship, required=environment.min_ukc,
+        notes=notes,
+    )  # fmt: skip
 
 
 def _check_hopper(hopper: float, ship: Ship) -> None:

@@ -17,6 +17,7 @@ from thalweg.operations.dredging.project_environment import (
     ProjectEnvironment,
     SiteNetwork,
 )
+from thalweg.planning.report.squat_report import least_water_with_squat
 from thalweg.route import Route, Track, evaluate
 from thalweg.route.referee.limit_checks import is_data_gap
 from thalweg.search import ProfileSearch, TimedPath
@@ -87,7 +88,8 @@ class SiteLegPlanner:
             path = None
         if best is None or not math.isfinite(best.arrive):
             return None
-        return SailedLeg(best, leg_energy(best))
+        least = least_water_with_squat(best, loaded.ship)
+        return SailedLeg(best, leg_energy(best), math.nan if least is None else least.clearance)
 
     def _evaluated_path(self, path: TimedPath, loaded: LoadedShip) -> Route:
         """Return the route by the corners of a path; by all nodes where these leave the data."""

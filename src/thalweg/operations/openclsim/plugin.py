@@ -52,8 +52,8 @@ class PlannedRouteMovable(Movable):
     The load factor is the level of the vessel's container over its capacity; a vessel without a
     container sails as its ship is loaded. Every move writes ``START`` and ``STOP`` to the log, and
     ``WAIT_START`` and ``WAIT_STOP`` with the position for each wait on the way; ``STOP`` carries
-    ``distance_m``, ``waiting_s``, ``least_clearance_m``, ``energy_j`` and ``fuel_kg`` (None where
-    unknown) beside the state of the vessel.
+    ``distance_m``, ``waiting_s``, ``least_clearance_m``, ``least_clearance_with_squat_m``,
+    ``energy_j`` and ``fuel_kg`` (None where unknown) beside the state of the vessel.
 
     Examples
     --------
@@ -214,6 +214,7 @@ def _leg_summary(leg: SailedLeg) -> dict[str, float | None]:
         "distance_m": leg.distance,
         "waiting_s": leg.waiting,
         "least_clearance_m": leg.clearance,
+        "least_clearance_with_squat_m": leg.clearance_with_squat,
         "energy_j": leg.energy,
         "fuel_kg": leg.fuel,
     }

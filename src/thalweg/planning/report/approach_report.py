@@ -13,6 +13,7 @@ from thalweg.chart import Chart
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage
+from thalweg.chart.port_limits.bridges import bridges_over
 from thalweg.core.geodesy import format_position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -48,7 +49,9 @@ def port_depth_note(approach: PortApproach, draught: float) -> str:
 def approach_limit_notes(
     chart: Chart, approach: PortApproach, sizes: Mapping[str, float | None]
 ) -> list[str]:
-    """Return a note for each named passage of an approach that is too small for a ship.
+    """Return a note for each passage and bridge of an approach that is too small for a ship.
+
+    One more names the bridges where the air draught is not known.
 
     Parameters
     ----------
@@ -60,11 +63,30 @@ def approach_limit_notes(
     reasons = too_small_passages(chart, sizes)
     lat, lon = np.array(approach.line, float).T
     draught = sizes.get("draught") or 0.0
-    return [
+    passages = [
         f"{APPROACH_TOO_SMALL}: that of {approach.label} leads through {reasons[one]} "
         f"({one.source.rpartition(': ')[2]}). "
         + ("Load less, or ask the port." if draught > one.max_draught else "Ask the port.")
         for _at, one in passages_crossed(chart.coastline, reasons, lat, lon)
+    ]
+    return passages + _bridge_notes(approach, sizes.get("air_draught"))
+
+
+def _bridge_notes(approach: PortApproach, air_draught: float | None) -> list[str]:
+    """Return notes on the bridges over an approach for an air draught [m]; None is not known."""
+    bridges = bridges_over(approach.line)
+    if air_draught is None:
+        names = [f"{one.name} ({one.clearance:g} m)" for one in bridges]
+        return [
+            f"Bridges over the approach of {approach.label}: {', '.join(names)}. The air draught "
+            "of the ship is not known and was not compared."
+        ] * bool(names)
+    return [
+        f"{APPROACH_TOO_SMALL}: that of {approach.label} leads under {one.name}: the air draught "
+        f"of {air_draught:g} m is over its clearance of {one.clearance:g} m ({one.source}). Ask "
+        "the port: other berths may lie before the bridge, and the clearance grows at low water."
+        for one in bridges
+        if one.clearance < air_draught
     ]
 
 

@@ -14,8 +14,11 @@ from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
-from thalweg.planning.report.depth_report import CHECK_DEPTH
+from thalweg.planning.report.approach_report import APPROACH_TOO_SMALL, PORT_TOO_SHALLOW
+from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
+from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.filled_weather import wave_shares
+from thalweg.planning.report.lane_report import AGAINST_TRAFFIC
 from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.waiting_report import WAITS
 from thalweg.route.number_texts import amount_text, miles_text
@@ -39,6 +42,12 @@ _UNDER_KEEL_CLEARANCE: Final = codes.REASONS[codes.DEPTH]
 _SAME_CLEARANCE: Final = 0.005  # [m]
 _TENTH: Final = 0.1  # by which waves in a wait are higher to be named [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
+_SEE_NOTES: Final = {  # first words of notes on what the referee does not check, and its name
+    AGAINST_TRAFFIC: "traffic lanes",
+    PORT_TOO_SHALLOW: "the size of the ship in a port or passage",
+    APPROACH_TOO_SMALL: "the size of the ship in a port or passage",
+    PASSAGE_CLOSED: "the size of the ship in a port or passage",
+}
 _SOURCES: Final = {  # other sources of prices by their own name
     "request": "given",
     FACTOR_OF_SHIP_FILE: "by the factor of the ship file",
@@ -307,25 +316,36 @@ def _clearance_text(route: Route, least: float) -> str:
 
 
 def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
-    """Return that all limits are kept, or which, where the depth is not known."""
+    """Return that all limits are kept, or which, where the depth is not known.
+
+    Notes on lanes, shoals and the size of the ship, which are no limits of the referee, are named.
+    """
     under_way = any(note.startswith(WAITS) for note in notes)
+    seen = [what for first, what in _SEE_NOTES.items() if _any_starts(notes, first)]
+    also = f"; SEE THE NOTES on {', '.join(dict.fromkeys(seen))}" if seen else ""
     if route.min_ukc_m is not None:
         where = ["under way, see the note on the wait"] if under_way else []
         if any(note.startswith(SQUAT_UNCOUNTED) for note in notes):
             where.append("at rest, NOT with squat: see the note on the clearance")
-        return " ".join(("all kept", "; ".join(where))).rstrip()
+        return " ".join(("all kept", "; ".join(where))).rstrip() + also
     checked = ["land", "zones"]
     if ship is not None:
         named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))
         limited = [what for what, limit in named if math.isfinite(limit)]
         limited += ["safety and comfort in waves"] if ship.limits.safety is not None else []
         checked += [f"{what} under way" for what in limited] if under_way else limited
-    shallow = any(note.startswith(CHECK_DEPTH) for note in notes)
-    depth = "TO BE CHECKED: the depth layer has too little, see the note"
-    depth = depth if shallow else "NOT checked"
+    depth = "NOT checked"
+    if _any_starts(notes, CROSSES_SHOAL):
+        depth = "TO BE CHECKED: the route crosses a charted shoal, see the note"
+    elif _any_starts(notes, CHECK_DEPTH):
+        depth = "TO BE CHECKED: the depth layer has too little, see the note"
     required = 0.0 if ship is None else ship.min_under_keel_clearance
     depth += f" (the ship file requires {required:g} m: give --depth FILE)" if required else ""
-    return f"kept: {', '.join(checked)}; depth under the keel {depth}"
+    return f"kept: {', '.join(checked)}; depth under the keel {depth}{also}"
+
+
+def _any_starts(notes: Sequence[str], first: str) -> bool:
+    return any(note.startswith(f"{first} ") or note.startswith(f"{first}:") for note in notes)
 
 
 def _speed(weather: dict[str, np.ndarray], pair: tuple[str, str]) -> np.ndarray | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -20,49 +20,76 @@ _TOUCHES: Final = 0.05  # clearance with squat that is none [m]
 _ROUNDING: Final = 0.005  # clearances are written to so much [m]
 
 
-def squat_notes(route: Route, ship: Ship, min_ukc: float) -> list[str]:
-    """Return a note where squat takes the clearance below the required one.
+class LeastWaterWithSquat(NamedTuple):
+    """The place of a route with the least water under the keel, squat taken off.
+
+    Attributes
+    ----------
+    clearance, squat : [m]; the clearance is negative where the ship is too deep.
+    sample : Its number among the samples of the route.
+    """
+
+    clearance: float
+    squat: float
+    sample: int
+
+
+def least_water_with_squat(route: Route, ship: Ship) -> LeastWaterWithSquat | None:
+    """Return where squat leaves the least water under the keel.
 
     Squat is that of `thalweg ship --water-depth`, at the speed through water of each sample.
 
+    Returns
+    -------
+    LeastWaterWithSquat or None : None for ships whose squat limits their speed (``models.squat``),
+        for those of which draught or dimensions are not known, and where no depth is known.
+    """
+    draught = float(ship.draught)
+    if ship.file.models.squat != SQUAT_METHODS[0] or not draught > 0.0:
+        return None
+    depth = np.asarray(route.samples["depth"], float)
+    speed = np.asarray(route.samples["speed_through_water"], float)
+    known = np.flatnonzero(np.isfinite(depth) & np.isfinite(speed))
+    model = squat_of_sheet(ship) if len(known) else None
+    if model is None:
+        return None
+    squat = model.sinkage(speed[known], depth[known], ship.loading.load_factor)
+    left = dynamic_under_keel_clearance(depth[known], draught, squat=squat)
+    worst = int(np.argmin(left))
+    return LeastWaterWithSquat(float(left[worst]), float(squat[worst]), int(known[worst]))
+
+
+def squat_notes(route: Route, ship: Ship, min_ukc: float) -> list[str]:
+    """Return a note where squat takes the clearance below the required one.
+
     Parameters
     ----------
-    route : The evaluated route.
-    ship : Without a note are ships whose squat limits their speed (``models.squat``), and those of
-        which draught or dimensions are not known.
+    route, ship : As of `least_water_with_squat`.
     min_ukc : Required under the keel at rest [m].
 
     Returns
     -------
     list of str : A sentence on the place with the least water under the keel, or none.
     """
-    draught = float(ship.draught)
-    if ship.file.models.squat != SQUAT_METHODS[0] or not draught > 0.0:
+    least = least_water_with_squat(route, ship)
+    if least is None or not least.clearance < min_ukc - _ROUNDING:
         return []
-    depth = np.asarray(route.samples["depth"], float)
-    speed = np.asarray(route.samples["speed_through_water"], float)
-    known = np.flatnonzero(np.isfinite(depth) & np.isfinite(speed))
-    model = squat_of_sheet(ship) if len(known) else None
-    if model is None:
-        return []
-    squat = model.sinkage(speed[known], depth[known], ship.loading.load_factor)
-    left = dynamic_under_keel_clearance(depth[known], draught, squat=squat)
-    worst = int(np.argmin(left))
-    if not left[worst] < min_ukc - _ROUNDING:
-        return []
-    at = known[worst]
-    place = format_position_minutes(
-        float(route.samples["lat"][at]), float(route.samples["lon"][at])
-    )
-    when = format_time(float(route.samples["time"][at]))
-    metres = f"{left[worst]:.1f} m are left under the keel"
-    if left[worst] < _TOUCHES:
-        metres = "no water is left under the keel: she may touch the bottom"
-    if left[worst] < -_TOUCHES:
-        metres = f"the ship is {-left[worst]:.1f} m too deep"
+    samples, at = route.samples, least.sample
+    place = format_position_minutes(float(samples["lat"][at]), float(samples["lon"][at]))
+    when = format_time(float(samples["time"][at]))
     required = f", less than the {min_ukc:g} m required" if min_ukc > 0.0 else ""
     return [
-        f"{SQUAT_UNCOUNTED}: with a squat of about {squat[worst]:.1f} m at "
-        f"{speed[at] / KNOT:.1f} kn through the water, {metres} at {place}, {when}{required}. "
+        f"{SQUAT_UNCOUNTED}: with a squat of about {least.squat:.1f} m at "
+        f"{float(samples['speed_through_water'][at]) / KNOT:.1f} kn through the water, "
+        f"{water_left_text(least.clearance)} at {place}, {when}{required}. "
         "Go slower there, or ask for more clearance (--ukc)."
     ]
+
+
+def water_left_text(clearance: float) -> str:
+    """Return how much water is left under the keel [m], in words."""
+    if clearance < -_TOUCHES:
+        return f"the ship is {-clearance:.1f} m too deep"
+    if clearance < _TOUCHES:
+        return "no water is left under the keel: she may touch the bottom"
+    return f"{clearance:.1f} m are left under the keel"

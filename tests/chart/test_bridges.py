@@ -1,0 +1,32 @@
+"""Bridges over the approaches of ports."""
+
+import pytest
+
+from thalweg.chart.approaches import PORT_APPROACHES
+from thalweg.chart.port_limits.bridges import bridges_over, every_bridge
+from thalweg.chart.ports import PORTS
+
+
+@pytest.mark.parametrize(
+    ("port", "bridges"),
+    [
+        ("Baltimore, US", ["Chesapeake Bay Bridge"]),
+        ("Tampa", ["Sunshine Skyway Bridge"]),
+        ("Philadelphia", ["Delaware Memorial Bridge", "Walt Whitman Bridge"]),
+        ("Rouen", ["Pont de Brotonne", "Pont de Tancarville", "Pont de Normandie"]),
+        ("Montreal", ["Laviolette Bridge", "Quebec Bridge"]),
+        ("Le Havre", []),
+        ("Rotterdam", []),
+    ],
+)
+def test_bridges_over_an_approach_are_known(port, bridges):
+    line = PORT_APPROACHES.of(PORTS.lookup(port)).line
+    names = [one.name for one in bridges_over(line)]
+    assert sorted(names) == sorted(bridges)
+    assert [one.name for one in bridges_over(line[::-1])] == names[::-1]
+
+
+def test_every_bridge_of_the_table_is_over_an_approach():
+    over = {one.name for approach in PORT_APPROACHES.all for one in bridges_over(approach.line)}
+    assert over == {one.name for one in every_bridge()}
+    assert all(20.0 < one.clearance < 80.0 for one in every_bridge())
