@@ -235,8 +235,8 @@ def _squat_notes(name: str, legs: list[SailedLeg], required: float) -> tuple[str
     return (
         f"{SQUAT_UNCOUNTED}: with squat, {water_left_text(float(np.fmin.reduce(left)))} on "
         f"{short} of {len(legs)} legs ({name}){least} The production is that of a ship that does "
-        "not squat. Give 'models: {squat: barrass_2004}' in the ship file, and she goes slower or waits "
-        "there; or ask for more clearance (min_ukc_m).",
+        "not squat. Give 'models: {squat: barrass_2004}' in the ship file, and she goes slower or "
+        "waits there; or ask for more clearance (min_ukc_m).",
     )
 
 
