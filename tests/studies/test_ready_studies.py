@@ -99,6 +99,9 @@ def test_a_year_of_voyages():
     deadweight = ship.file.hull.deadweight_t
     assert row["cii"] == pytest.approx(12.4e9 / (deadweight * 88e3))
     assert row["cii_rating"] in "ABCDE"
+    assert "charges_in_cost" not in table
+    charged = annual_figures(rows.assign(charged=[False, True]), ["ship"], {"a": ship}, annual)
+    assert bool(charged.iloc[0]["charges_in_cost"])
 
 
 def test_european_charges_and_rating_of_a_ship_year_by_hand():

@@ -294,7 +294,13 @@ def _print_annual(annual: pd.DataFrame) -> None:
             "of the fuel."
         )
     if "eu_ets_cost" in annual and annual["eu_ets_cost"].notna().any():
-        print("The costs (cost_...) do not include eu_ets_cost and fueleu_penalty.")
+        if "charges_in_cost" in annual:
+            print(
+                "The costs (cost_...) include eu_ets_cost and fueleu_penalty where charges_in_cost "
+                "is True: do not add them there. Other costs do not include them."
+            )
+        else:
+            print("The costs (cost_...) do not include eu_ets_cost and fueleu_penalty.")
     elif "eu_ets_cost" in annual:
         print(
             "eu_ets_cost, fueleu_penalty -: no price, no share of the voyage in the European "

@@ -103,7 +103,8 @@ def annual_figures(
         [g/(t nm)] or [g/(GT nm)]), ``cii_required`` and ``cii_rating``, None where the ship file
         has no capacity or another type; ``eu_ets_cost`` and ``fueleu_penalty`` by
         `european_charges_of_year`, None where a price, the share or the fuel is not known. All
-        are None for ships below `LEAST_GROSS_TONNAGE`. Time and emissions in port are not counted.
+        are None for ships below `LEAST_GROSS_TONNAGE`. ``charges_in_cost`` is true where the
+        prices of the voyages include these charges (entry ``charges``). Time and emissions in port are not counted.
     """
     found = []
     for key, group in rows.groupby(by, dropna=False) if by else [((), rows)]:
@@ -127,6 +128,8 @@ def annual_figures(
             "cii_required": rating and rating["required"],
             "cii_rating": rating and rating["rating"],
         }
+        if "charged" in group and group["charged"].any():
+            row["charges_in_cost"] = True
         found.append(row | european_charges_of_year(group, trips, ship, annual))
     import pandas as pd
 

@@ -208,7 +208,8 @@ def summarise_study(folder: str | Path) -> StudySummary:
         usable = frame["refusal"].isna() & frame["feasible"].fillna(False).astype(bool)
     else:
         usable = pd.Series(False, index=frame.index)
-    wanted = dict.fromkeys([*FIGURES, *INDICATORS, *_SAVINGS])
+    costs = [name for name in frame if str(name).startswith("cost_")]  # cost_usd, of each currency
+    wanted = dict.fromkeys([*FIGURES, *costs, *INDICATORS, *_SAVINGS])
     figures = [name for name in wanted if name in frame and frame[name].notna().any()]
     groups = frame.groupby(by, sort=True, dropna=False) if by else [((), frame)]
     rows = []
@@ -264,12 +265,16 @@ def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
         return pd.DataFrame()
     ships: dict[Any, Ship] = {}
     shares: dict[str, float] = {}
+    charged: dict[str, bool] = {}
     for row in study.rows():
         label = row.labels.get("ship")
         if label not in ships:
             ships[label] = ship_of_request(row.request, str(study.folder))
         shares[row.id] = share_of_voyage(row.request.get("voyage", {}), study.annual)
-    rows = usable.assign(eu_share=usable["id"].map(shares).astype(float))
+        charged[row.id] = bool(row.request.get("charges"))
+    rows = usable.assign(
+        eu_share=usable["id"].map(shares).astype(float), charged=usable["id"].map(charged)
+    )
     return annual_figures(rows, by, ships, study.annual)
 
 
