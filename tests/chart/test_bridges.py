@@ -2,6 +2,7 @@
 
 import pytest
 
+from thalweg.chart.approach_branches import approach_branches
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.port_limits.bridges import bridges_over, every_bridge
 from thalweg.chart.ports import PORTS
@@ -27,6 +28,8 @@ def test_bridges_over_an_approach_are_known(port, bridges):
 
 
 def test_every_bridge_of_the_table_is_over_an_approach():
-    over = {one.name for approach in PORT_APPROACHES.all for one in bridges_over(approach.line)}
+    lines = [approach.line for approach in PORT_APPROACHES.all]
+    lines += [branch.line for branch in approach_branches() if len(branch.line) > 1]
+    over = {one.name for line in lines for one in bridges_over(line)}
     assert over == {one.name for one in every_bridge()}
     assert all(20.0 < one.clearance < 80.0 for one in every_bridge())

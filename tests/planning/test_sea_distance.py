@@ -404,3 +404,24 @@ def tall_ship(metres):
         "block_coefficient": 0.6, "air_draught_m": metres,
     }  # fmt: skip
     return Ship.from_dict({"name": "tall", "hull": hull, "speeds_kn": [15.0]})
+
+
+def test_a_ship_too_high_for_a_canal_takes_the_main_approach_and_is_stated_closed_ways():
+    """366 m and 63 m high: through the Chesapeake and Delaware Canal, and not a word on Panama."""
+    hull = {
+        "length_between_perpendiculars_m": 350.0, "length_overall_m": 366.0, "breadth_m": 48.2,
+        "draught_m": 9.0, "block_coefficient": 0.66, "air_draught_m": 63.0,
+    }  # fmt: skip
+    ship = Ship.from_dict({"name": "cruise", "hull": hull, "speeds_kn": [18.0]})
+    high = thalweg.distance("Rotterdam", "Baltimore", ship=ship)
+    assert not [name for name, _ in high.approaches if "Delaware" in name]
+    assert any("Chesapeake Bay Bridge" in note for note in high.notes)
+    low = thalweg.distance("Rotterdam", "Baltimore", draught_m=9.0)
+    assert [name for name, _ in low.approaches if "Delaware" in name]
+    vancouver = thalweg.distance("Rotterdam", "Vancouver, CA", ship=ship)
+    (note,) = [note for note in vancouver.notes if note.startswith("Passage closed: Panama Canal")]
+    assert "the air draught of 63 m is over the 57.91 m allowed. The way through is about" in note
+    with pytest.raises(NoRouteError, match="Bosporus: the air draught of 63 m is over the 58 m"):
+        thalweg.distance("Rotterdam", "Odesa", ship=ship)
+    opened = thalweg.distance("Rotterdam", "Odesa", ship=ship, open=["Bosporus"])
+    assert "Bosporus" in opened.straits

@@ -27,7 +27,7 @@ class ApproachBranch:
         From inner waters to sea [deg]; one position where the ship leaves the approach there.
     source : Of the line.
     canal : Name of the canal that begins there, or empty.
-    max_draught : Of ships that use it [m]; inf without a limit.
+    max_draught, max_length : Of ships that use it [m]; inf without a limit.
     """
 
     name: str
@@ -35,6 +35,7 @@ class ApproachBranch:
     source: str
     canal: str = ""
     max_draught: float = math.inf
+    max_length: float = math.inf
 
 
 @cache
@@ -49,6 +50,7 @@ def approach_branches() -> tuple[ApproachBranch, ...]:
                   (pair.split(",") for pair in row["line"].split())),
             row["source"],
             max_draught=float(row["max_draught_m"] or "inf"),
+            max_length=float(row["max_length_m"] or "inf"),
         )
         for row in rows
     )  # fmt: skip

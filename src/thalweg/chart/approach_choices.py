@@ -133,6 +133,7 @@ def _by_branch(
         source=source,
         canal=branch.canal,
         way_draught=branch.max_draught,
+        way_length=branch.max_length,
     )
 
 

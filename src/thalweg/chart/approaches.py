@@ -66,7 +66,7 @@ class PortApproach:
     draught_source : Of the draught, where `port_limits.port_draughts` replaces the index.
     way : By which channel or to which canal, where it is not the main way ("by Fedjeosen").
     canal : Name of the canal that the line leads to, or empty.
-    way_draught : Largest draught of ships that use this way [m]; inf without a limit.
+    way_draught, way_length : Of the largest ships that use this way [m]; inf without a limit.
     through : Name of the canal that the line leads through, or empty.
     through_length, through_time : Of the part in that canal [m, s].
     """
@@ -82,6 +82,7 @@ class PortApproach:
     way: str = ""
     canal: str = ""
     way_draught: float = math.inf
+    way_length: float = math.inf
     through: str = ""
     through_length: float = 0.0
     through_time: float = 0.0

@@ -15,8 +15,9 @@ from thalweg.chart.canals import canals_with_dues
 from thalweg.chart.passage_crossings import CAPES, names_passed
 from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
-from thalweg.planning.network_selection.way_choice import with_chosen_ways
+from thalweg.planning.network_selection.way_choice import with_chosen_ways, without_small_ways
 from thalweg.planning.plan_data import PlanData
+from thalweg.planning.request.offing_choice import ship_dimensions
 from thalweg.planning.request.voyage_endpoints import Endpoint, resolve_places
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
@@ -167,9 +168,10 @@ def _question(plan: PlanData) -> _Question | None:
     time = float(np.sum(duration[at_sea]))  # without waits: a leg departs after its wait
     speed = sailed / time if sailed > 0.0 and time > 0.0 else MAX_APPROACH_SPEED
     canals = canals_with_dues(chart.canals, context.ship.file.hull)
+    ends = resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)
     return _Question(
         Seaways.of_ship_chart(chart),
-        tuple(resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)),
+        tuple(without_small_ways(ends, ship_dimensions(context.ship))),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),
         float(context.ship.draught),

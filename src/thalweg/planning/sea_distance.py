@@ -22,9 +22,10 @@ from thalweg.core.geodesy import Position, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.closed_to_draught import closed_to_draught_notes
+from thalweg.planning.network_selection.closed_to_size import closed_to_size_notes
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.seas_of_distance import opened_names, seas_and_every
-from thalweg.planning.network_selection.way_choice import with_chosen_ways
+from thalweg.planning.network_selection.way_choice import with_chosen_ways, without_small_ways
 from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
 from thalweg.planning.report.approach_report import (
     approach_limit_notes,
@@ -230,6 +231,7 @@ def sea_distance(
         opened = opened or opened_names(chart, of_ship.opened)
     if draught_m is not None:
         sizes["draught"] = draught_m
+    ends = without_small_ways(ends, sizes)
     offing = offing_nm * NAUTICAL_MILE
     found = [_way_over_seas(chart, ends, closed, opened, offing, sizes)]
     if opened:  # never longer than without: the graph with these passages is another one
@@ -253,7 +255,8 @@ def _way_over_seas(
         way = way_over_seas(seas, ends, draught=draught, offing=offing)
     except NoRouteError as error:
         chosen = with_chosen_ways(ends, lambda: seas, draught=draught or 0.0)
-        named = closed_way_error(seas, chosen, {"draught": draught, "length": 0.0}, opens=False)
+        own = {"length": 0.0, **{name: size for name, size in sizes.items() if size is not None}}
+        named = closed_way_error(seas, chosen, own, opens="air_draught" in sizes)
         raise named or error from None
     notes = tuple(end.note for end in way.ends if end.note)
     texts = []
@@ -275,6 +278,7 @@ def _way_over_seas(
         too_deep = seas.closed_names - every.closed_names
         shut = closed_to_draught_notes(seas, too_deep, ends, way, draught=draught, offing=offing)
         notes += shut + _detours(seas, way, offing)
+        notes += closed_to_size_notes(seas, sizes, ends) if "air_draught" in sizes else ()
     notes += seas.near_land_notes(way.at_sea, way.ends, offing=offing)
     if any(approach.through for approach in way.approaches):
         canals = _canals_entered(chart, way.line)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from thalweg.chart import Chart
-from thalweg.planning.network_selection.way_choice import with_chosen_ways
+from thalweg.planning.network_selection.way_choice import with_chosen_ways, without_small_ways
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.zone_report import margin_notes
 from thalweg.planning.request.chart_restrictions import (
@@ -18,7 +18,11 @@ from thalweg.planning.request.coverage_check import doubts_of_voyage, endpoints_
 from thalweg.planning.request.early_checks import check_request
 from thalweg.planning.request.lane_choice import add_traffic_schemes
 from thalweg.planning.request.network_choice import NetworkChoice
-from thalweg.planning.request.offing_choice import chosen_offing, restrict_passages
+from thalweg.planning.request.offing_choice import (
+    chosen_offing,
+    restrict_passages,
+    ship_dimensions,
+)
 from thalweg.planning.request.ordered_speed import ordered_setting
 from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.shoal_choice import add_shoals
@@ -64,7 +68,9 @@ def ends_by_ways(
     voyage: Voyage, ship: Ship, chart: Chart
 ) -> tuple[list[Endpoint], Chart, list[str]]:
     """Return the ends by the ways from their berths, the chart open to the ship, and notes."""
-    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart)
+    ends = without_small_ways(
+        resolve_places(voyage.start, voyage.via, voyage.goal, chart), ship_dimensions(ship)
+    )
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
     seas = partial(Seaways.of_ship_chart, chart)

@@ -104,7 +104,8 @@ def annual_figures(
         has no capacity or another type; ``eu_ets_cost`` and ``fueleu_penalty`` by
         `european_charges_of_year`, None where a price, the share or the fuel is not known. All
         are None for ships below `LEAST_GROSS_TONNAGE`. ``charges_in_cost`` is true where the
-        prices of the voyages include these charges (entry ``charges``). Time and emissions in port are not counted.
+        prices of the voyages include these charges (entry ``charges``). Time and emissions in port
+        are not counted.
     """
     found = []
     for key, group in rows.groupby(by, dropna=False) if by else [((), rows)]:

@@ -208,7 +208,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
         usable = frame["refusal"].isna() & frame["feasible"].fillna(False).astype(bool)
     else:
         usable = pd.Series(False, index=frame.index)
-    costs = [name for name in frame if str(name).startswith("cost_")]  # cost_usd, of each currency
+    costs = [name for name in map(str, frame) if name.startswith("cost_")]  # by currency
     wanted = dict.fromkeys([*FIGURES, *costs, *INDICATORS, *_SAVINGS])
     figures = [name for name in wanted if name in frame and frame[name].notna().any()]
     groups = frame.groupby(by, sort=True, dropna=False) if by else [((), frame)]

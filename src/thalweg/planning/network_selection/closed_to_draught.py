@@ -30,9 +30,8 @@ from thalweg.planning.report.closed_way_report import (
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
 
-#: Closed ways have a note that save so much of the distance, and at least so much [m].
-_LEAST_SHARE: Final = 0.02
-_LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE
+LEAST_SHARE: Final = 0.02  #: closed ways have a note that save so much of the distance ...
+LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  #: ... and at least so much [m]
 _PIECE: Final = 10.0 * NAUTICAL_MILE  # of the line of a closed way, to see how far off it is
 _BESIDE: Final = 2.0 * NAUTICAL_MILE  # a branch so near to a closed passage leads to it
 _AS_SHORT: Final = 1.0 * NAUTICAL_MILE  # a way so little longer needs one closed way less
@@ -165,7 +164,7 @@ def closed_to_draught_notes(
     """
     branches = [one for end in ends for one in end.other_ways if one.way_draught < draught]
     every = _ClosedToDraught(seas, ends, draught, ways_of_names(seas, sorted(closed)), branches)
-    least_saved = max(_LEAST_SAVED, _LEAST_SHARE * way.length)
+    least_saved = max(LEAST_SAVED, LEAST_SHARE * way.length)
     if not (every.ways or branches) or way.length - every.least_through() < least_saved:
         return ()
     reasons = _needed(every)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
 
-from thalweg.chart.approaches import (
-    line_between,
-)
+from thalweg.chart.approaches import PortApproach, line_between
+from thalweg.chart.port_limits.bridges import bridges_over
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, line_length
 from thalweg.core.units import NAUTICAL_MILE
@@ -48,6 +47,24 @@ def with_chosen_ways(
     if _has_choice(found[-1]):
         found[-1] = _best_pair(found[-2], found[-1], seas(), draught)[1]
     return found
+
+
+def without_small_ways(
+    ends: Sequence[Endpoint], sizes: Mapping[str, float | None]
+) -> list[Endpoint]:
+    """Return ends without the other ways from their berths that are too short or low for a ship.
+
+    Parameters
+    ----------
+    sizes : Length and air draught [m], by name; those that are unknown are not checked.
+    """
+    length, height = sizes.get("length") or 0.0, sizes.get("air_draught") or 0.0
+
+    def fits(way: PortApproach) -> bool:
+        low = height > 0.0 and any(one.clearance < height for one in bridges_over(way.line))
+        return not low and way.way_length >= length
+
+    return [replace(end, other_ways=tuple(filter(fits, end.other_ways))) for end in ends]
 
 
 def _has_choice(end: Endpoint) -> bool:
