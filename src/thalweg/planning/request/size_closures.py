@@ -36,7 +36,8 @@ def closed_and_open(ship: Ship, chart: Chart, small_canals: tuple[str, ...] = ()
     small_canals : Those that a ship of unknown length does not use.
     """
     sizes = ship_dimensions(ship)
-    every = [*chart.canals, *(one for one in chart.passages if one.use == "trade")]
+    every: list[Canal | Passage] = [*chart.canals]
+    every += [one for one in chart.passages if one.use == "trade"]
     closed = [one.name for one in every if _is_too_small(one, sizes)]
     length = sizes["length"]
     small = length is not None and length < SMALL_SHIP_LENGTH
