@@ -132,7 +132,7 @@ def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
 
 def test_ice_latitudes_are_excluded_unless_the_voyage_goes_there():
     def reach(lat):
-        chart = exclude_ice_latitudes(
+        chart, _ = exclude_ice_latitudes(
             CHART, [Endpoint("a", 60.0, 0.0, 0.0), Endpoint("b", lat, 10.0, 0.0)]
         )
         return chart.is_navigable(np.array([73.0, 79.5]), np.array([10.0, 5.0])).tolist()

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from thalweg.chart import Chart
+from thalweg.planning.network_selection.southern_limit import southern_limit
 from thalweg.planning.network_selection.way_choice import with_chosen_ways, without_small_ways
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.zone_report import margin_notes
@@ -45,7 +46,10 @@ def voyage_context(
     notes += shoal_notes
     chart = add_traffic_schemes(chart, voyage, ship, ends)
     notes += margin_notes(chart)
-    chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
+    seas = partial(Seaways.of_ship_chart, chart)
+    chart, far_south = exclude_ice_latitudes(chart, ends, partial(southern_limit, ends, seas))
+    chart, more = add_emission_control_areas(chart, voyage, ship)
+    notes += far_south
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     ends = endpoints_within_coverage(
         ends, voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs

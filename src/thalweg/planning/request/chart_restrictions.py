@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from thalweg.chart import Chart
@@ -85,16 +85,27 @@ def _near_geodesic(canal: Canal, start: Endpoint, goal: Endpoint) -> bool:
     return float(min(lengths)) < min(_DETOUR_RATIO * straight, straight + _DETOUR)
 
 
-def exclude_ice_latitudes(chart: Chart, ends: list[Endpoint]) -> Chart:
-    """Return the chart without the latitudes where ice is likely, as far as the voyage allows."""
+def exclude_ice_latitudes(
+    chart: Chart,
+    ends: list[Endpoint],
+    southern: Callable[[float], tuple[float, list[str]]] | None = None,
+) -> tuple[Chart, list[str]]:
+    """Return the chart without the latitudes where ice is likely, as far as the voyage allows.
+
+    Parameters
+    ----------
+    southern : Called with the southern limit [deg]; returns a narrower one, and notes on it.
+    """
     area = chart.area
     if area.width < 360.0 or area.south > -89.0 or area.north < 89.0:
-        return chart  # limited by the user
+        return chart, []  # limited by the user
     north = max(ICE_LIMIT_NORTH, *(end.lat + _ICE_LIMIT_MARGIN for end in ends))
     if any(on_ice_coast(end.lat, end.lon) for end in ends):
         north = max(north, northern_limit(*((end.lat, end.lon) for end in ends)))
     south = min(ICE_LIMIT_SOUTH, *(end.lat - _ICE_LIMIT_MARGIN for end in ends))
-    return chart.within(max(south, -90.0), min(north, 90.0), area.west, area.west + area.width)
+    south, notes = (south, []) if southern is None else southern(south)
+    kept = chart.within(max(south, -90.0), min(north, 90.0), area.west, area.west + area.width)
+    return kept, notes
 
 
 def add_emission_control_areas(chart: Chart, voyage: Voyage, ship: Ship) -> tuple[Chart, list[str]]:

@@ -1,0 +1,61 @@
+"""How far south a voyage goes by default: not into the icebergs of the Southern Ocean for miles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import densify
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways, path_length_and_canals
+
+#: Latitude [deg] that voyages do not pass by default, where no end is near it.
+ICEBERG_LATITUDE: Final = -50.0
+_ROUND_HORN: Final = (-110.0, -35.0)  # longitudes [deg] in which ways round Cape Horn pass it
+_MARGIN: Final = 3.0  # of ends [deg]
+_FAR_SOUTH: Final = -15.0  # voyages without an end south of this do not come near it [deg]
+_PIECE: Final = 60.0 * NAUTICAL_MILE
+SOUTH_LEFT_OUT: Final = "Water south of 50 S is left out"  #: a note on a longer way begins so
+
+
+def southern_limit(
+    ends: Sequence[Endpoint], seas: Callable[[], Seaways], lowest: float
+) -> tuple[float, list[str]]:
+    """Return the latitude that a voyage does not pass, and a note where that makes it longer.
+
+    It is `ICEBERG_LATITUDE` where the shortest way passes that latitude in the open ocean: great
+    circles between the southern capes lead through icebergs, in the worst of the weather. A voyage
+    round Cape Horn or by a canal of America, whose other way that is, keeps the usual limit.
+
+    Parameters
+    ----------
+    ends : With via points between them.
+    seas : Called only for voyages that may come so far south: what the voyage may use.
+    lowest : The usual limit [deg].
+    """
+    if lowest < -60.0 or all(end.lat > _FAR_SOUTH for end in ends):
+        return lowest, []
+    if any(end.lat < ICEBERG_LATITUDE + _MARGIN for end in ends):
+        return lowest, []
+    waters = seas()
+    try:
+        paths = [waters.graph_path(a, b) for a, b in pairwise(ends)]
+    except NoRouteError:
+        return lowest, []
+    canals = [name for path in paths for name in path_length_and_canals(waters.chart, path)[1]]
+    corners = np.array([place for path in paths for place in path], float)
+    lat, lon, _ = densify(corners[:, 0], corners[:, 1], _PIECE)
+    south = lat < ICEBERG_LATITUDE
+    west, east = _ROUND_HORN
+    by_horn = south & (lon > west) & (lon < east)
+    if not south.any() or by_horn.any() or any("Panama" in name for name in canals):
+        return lowest, []
+    return ICEBERG_LATITUDE, [
+        f"{SOUTH_LEFT_OUT}: the shortest way goes beyond, where icebergs are usual and the weather "
+        "is worst. Give a via point there to go that way."
+    ]

@@ -1,0 +1,33 @@
+"""How far south voyages go by default."""
+
+import pytest
+
+from thalweg.planning.network_selection.southern_limit import southern_limit
+from thalweg.planning.request.voyage_endpoints import resolve_places
+from thalweg.planning.seaways import Seaways, world_chart
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "via", "limit"),
+    [
+        ("Paranagua", "CNBYQ", (), -50.0),  # 60 S on the great circle to the Sunda Strait
+        ("Paranagua", "CNBYQ", ((-55.0, 30.0),), -60.0),  # the wish of the user
+        ("Santos", "Valparaiso", (), -60.0),  # round Cape Horn or by Magellan
+        ("Bluff", "Montevideo", (), -60.0),
+        ("Cape Town", "Durban", (), -60.0),  # never so far south
+        ("Rotterdam", "New York", (), -60.0),
+    ],
+)
+def test_the_limit_of_voyages(start, goal, via, limit):
+    chart = world_chart()
+    ends = resolve_places(start, via, goal, chart)
+    found, notes = southern_limit(ends, lambda: Seaways.of_ship_chart(chart), -60.0)
+    assert found == limit
+    assert len(notes) == (limit == -50.0)
+    for note in notes:
+        assert note.startswith("Water south of 50 S is left out: the shortest way goes")
+
+
+def test_seas_are_not_read_for_voyages_in_the_north():
+    ends = resolve_places("Rotterdam", (), "Singapore", world_chart())
+    assert southern_limit(ends, pytest.fail, -60.0) == (-60.0, [])
