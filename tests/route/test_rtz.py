@@ -1,5 +1,6 @@
 """RTZ: files against the schemas of the standard, and files as other programs write them."""
 
+import re
 import warnings
 import zipfile
 
@@ -275,7 +276,7 @@ def test_samples_of_the_reference_data_are_read():
 
 
 @pytest.mark.parametrize("canal", [0, 1, 2])
-def test_a_canal_is_read_as_one_leg(tmp_path, canal):
+def test_a_canal_is_written_with_its_bends_and_read_as_one_leg(tmp_path, canal):
     from dataclasses import replace
 
     from thalweg.chart import Chart
@@ -286,6 +287,9 @@ def test_a_canal_is_read_as_one_leg(tmp_path, canal):
     track = Track([lat1, lat1, lat2, lat2], [lon1 - 0.4, lon1, lon2, lon2 + 0.4], 0.0)
     sailed = evaluate(track, ship=ship(7.0), sea=Sea.calm(), chart=chart)
     write_rtz(sailed, tmp_path / "canal.rtz", RouteFileOptions(chart=chart))
+    written = re.findall(r'position lat="(\S+)" lon="(\S+)"', (tmp_path / "canal.rtz").read_text())
+    bends = [place for place in written if (float(place[0]), float(place[1])) in chosen.path]
+    assert len(bends) == len(chosen.path)  # one straight leg from end to end was over land
     again = evaluate(tmp_path / "canal.rtz", ship=ship(7.0), sea=Sea.calm(), chart=chart)
     assert again.time_h == pytest.approx(sailed.time_h, rel=1e-4)
     assert [row["leg_kind"] for row in again.waypoints()].count("canal") == 1

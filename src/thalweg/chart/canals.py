@@ -270,3 +270,19 @@ def canal_index_of_legs(
             there = at_first & (distance(c[near], d[near], *last) <= END_TOLERANCE)
             flat[legs[near[there]]] = k
     return number
+
+
+def path_of_canal(start: ArrayLike, goal: ArrayLike) -> tuple[Position, ...]:
+    """Return the line of the canal of the package from one position to the other, or ().
+
+    Parameters
+    ----------
+    start, goal : Ends of a canal (lat, lon) [deg], in any order.
+    """
+    ends = [np.array([value]) for value in (*np.asarray(start, float), *np.asarray(goal, float))]
+    number = int(canal_index_of_legs(CANALS, *ends)[0])
+    if number < 0:
+        return ()
+    path = CANALS[number].path
+    first, last = (float(distance(*one, *np.asarray(start, float))) for one in (path[0], path[-1]))
+    return path if first < last else path[::-1]

@@ -148,8 +148,9 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
     if chart is not None and chart.canals:
         canals = chart.canals if ship is None else canals_with_dues(chart.canals, ship.file.hull)
         legs = _through_canals(track, chart, canals)
-    if ship is not None and getattr(chart, "approaches", None) is not None:
+    if ship is not None and legs.canals:
         legs = _with_canal_parts(legs, track)
+    if ship is not None and getattr(chart, "approaches", None) is not None:
         legs = _with_approach_legs(legs, track, chart, ship)  # type: ignore[arg-type]
     return legs
 

@@ -118,6 +118,8 @@ def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
     )
     kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
     in_approach = kind == LEG_KINDS.index("approach")
+    if chart.approaches is not None:  # on the way, too: plans follow their lines past other ports
+        in_approach = in_approach | chart.approaches.legs(track.lat, track.lon)
     breaches = [
         at
         for at, _ in offing_breaches(off_land, track)

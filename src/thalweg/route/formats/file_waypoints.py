@@ -14,8 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.chart.canals import path_of_canal
+from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import densify, direct
+from thalweg.core.geodesy import densify, direct, distance
 from thalweg.core.rhumb_lines import densify_for_rhumb, rhumb_cross_track, rhumb_pieces
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -111,10 +113,30 @@ def _vertices(line: RouteLine, options: RouteFileOptions, limit: float) -> FileV
     lon = np.where(lon >= 180.0, lon - 360.0, lon)
     leg = np.searchsorted(line.start, at + 1e-6, side="right") - 1
     leg = np.minimum(leg, len(line.lat) - 2).astype(np.int64)
+    lat, lon, leg, at = _with_canal_lines(line, lat, lon, leg, at)
     approach = line.approach[leg]
     approach[1:] |= approach[:-1]
     lat, lon = _off_land(options, lat, lon, approach)
     return FileVertices(lat, lon, leg, at, _cross_track(line, options, lat, lon, at))
+
+
+def _with_canal_lines(
+    line: RouteLine, lat: FloatArray, lon: FloatArray, leg: IntArray, at: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray, FloatArray]:
+    """Return the waypoints with the bends of canals: straight to its other end one is on land."""
+    places = np.stack([lat, lon, leg, at], axis=1)
+    rows: list[FloatArray] = []
+    for k in range(len(places) - 1):
+        rows.append(places[k : k + 1])
+        path = path_of_canal(places[k, :2], places[k + 1, :2]) if line.canal[leg[k]] else ()
+        if len(path) > 2:
+            bends = np.array(path, float)
+            sailed = cumulative_sums(distance(*bends[:-1].T, *bends[1:].T))
+            along = at[k] + sailed * (at[k + 1] - at[k]) / sailed[-1]
+            inner = np.stack([*bends.T, np.full(len(bends), leg[k]), along], axis=1)
+            rows.append(inner[1:-1])
+    whole = np.concatenate([*rows, places[-1:]])
+    return whole[:, 0], whole[:, 1], whole[:, 2].astype(np.int64), whole[:, 3]
 
 
 def _broken_legs(

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.chart.canals import CANALS
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import Position, check_position, parse_position
 from thalweg.core.given_numbers import shortened_repr, to_number
@@ -78,6 +79,7 @@ _GREAT_CIRCLE_WORDS = ("gc", "great circle", "greatcircle", "orthodrome", "geode
 RHUMB_DEVIATION = 20.0  #: rhumb lines are sailed as geodesics this close to them [m]
 _LETTER = re.compile(r"\d.*[NSEWnsew]|[NSEWnsew].*\d")  # of a hemisphere, with digits
 _NUMBERED = re.compile(r"WP \d+")  # names of this package
+_SAME_BEND = 2e-5  # of a canal, as written in a file [deg]
 LONGEST_WAIT = 366.0 * DAY  #: [s]
 
 
@@ -361,8 +363,37 @@ def _track(parsed: ParsedTrack, depart: float) -> Track:
             number.pop()
         merged.append((place, order))
         number.append(leg)
+    merged, number = _with_whole_canals(merged, number)
     lat, lon = np.array([place for place, _ in merged]).T
     wait = np.array([order.wait for _, order in merged])
     speed = np.array([order.speed for _, order in merged[:-1]])
     legs = np.array(number[:-1])
     return Track(lat, lon, depart, wait, speed=speed, extensions=parsed.extensions, given_leg=legs)
+
+
+def _with_whole_canals(
+    merged: list[tuple[Position, WaypointOrder]], number: list[int]
+) -> tuple[list[tuple[Position, WaypointOrder]], list[int]]:
+    """Return waypoints without the bends of canals that are passed from end to end.
+
+    Such a canal is one leg, as in the route of a plan. It has the number of its last part.
+    """
+    kept, numbers, at = [], [], 0
+    while at < len(merged):
+        bends = _bends_after(merged, at)
+        kept.append(merged[at])
+        numbers.append(number[at + bends])
+        at += bends + 1
+    return kept, numbers
+
+
+def _bends_after(merged: list[tuple[Position, WaypointOrder]], at: int) -> int:
+    """Return how many waypoints after one are bends of a canal of which that is an end."""
+    for canal in CANALS:
+        for path in (canal.path, canal.path[::-1]):
+            places = merged[at : at + len(path)]
+            if len(places) < len(path) or any(order.wait > 0.0 for _, order in places[1:-1]):
+                continue
+            if np.allclose([place for place, _ in places], path, rtol=0.0, atol=_SAME_BEND):
+                return len(path) - 2
+    return 0
