@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from thalweg.chart.canal_parts import part_number_of_legs
 from thalweg.core.geodesy import Position, densify, direct, inverse
 from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.types import FloatArray
@@ -37,6 +38,7 @@ def corridor_notes(parsed: ParsedTrack, chart: Chart) -> list[str]:
     inside = np.zeros(len(lat) - 1, bool) if approaches is None else approaches.legs(lat, lon)
     if getattr(chart, "canals", ()):
         inside = inside | (chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]) >= 0)
+        inside = inside | (part_number_of_legs(chart.canals, lat, lon) >= 0)
     rhumb = parsed.rhumb or [False] * (len(lat) - 1)
     met, tested = [], 0
     for k, sides in enumerate(parsed.corridors):
