@@ -172,7 +172,7 @@ def test_only_with_known_depth_all_limits_are_called_kept(answer):
 
 def test_limits_that_closed_other_water(answer):
     met = {"land": 900, "under-keel clearance": 5, "wave height above the limit": 20}
-    closed = "; other water was refused: wave height above the limit, under-keel clearance"
+    closed = "; other ways were refused for: wave height above the limit, under-keel clearance"
     assert limits_text(replace(answer, rejections=met)).endswith(closed)
     assert "land" in limits_text(replace(answer, rejections={"land": 3}))
 

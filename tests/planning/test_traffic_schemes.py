@@ -190,7 +190,7 @@ def test_a_detour_by_a_scheme_is_stated(past_finisterre):
     (note,) = lane_detour_notes(chart, [network])
     assert note.startswith("Keeping out of the inshore traffic zone of Off Finisterre")
     assert "Rule 10 requires ships to keep out." in note and "need not" not in note
-    assert "Only to compare, --ignore-lanes plans without" in note and "Rule 10 (d)" in note
+    assert "To compare only, plan with --ignore-lanes" in note and "Rule 10 (d)" in note
     miles = float(note.split(" about ")[1].split(" nm")[0])
     assert 4.0 < miles < 30.0
     free = replace(chart, zones=replace(chart.zones, lanes=()))

@@ -54,7 +54,8 @@ _MOST_DIGITS: Final = {"time": 2, "distance": 1, "fuel": 5, "cost": 2}  # of sma
 _EQUAL: Final = 1e-2  # figures that differ by less than this share are the same
 _READ_AS_SUMS: Final = ("fuel", "cost")
 _EQUAL_SUMS: Final = 1e-3  # the same for these, of the least
-_EQUAL_POINTS: Final = 0.5  # ... as are those in per cent of the time, by so many points
+_EQUAL_POINTS: Final = 0.5  # ... as are those in per cent of the time, by so many points ...
+_EQUAL_SHELTER: Final = 5.0  # ... and those in per cent of the length near land
 _WORTH_WORDS: Final = 0.03  # smaller differences are not put into words ...
 _WORTH_WORDS_OF_TIME: Final = 0.005  # ... but those of time are
 _IN_WORDS: Final = ("time", "sick_percent", "fuel", "encounters", "distance")
@@ -132,6 +133,8 @@ def _tolerance(name: str, values: np.ndarray) -> float:
     """Return by how much values of a figure differ that are the same."""
     if name == "workable_percent":  # what is missing to 100 % counts
         return _EQUAL_POINTS
+    if name == "inshore_percent":
+        return _EQUAL_SHELTER
     return _EQUAL * max(float(np.nanmax(np.abs(values))), 1e-12)
 
 

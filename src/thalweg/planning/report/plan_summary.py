@@ -156,7 +156,7 @@ def limits_text(plan: PlanData) -> str:
         return kept + only
     if known is not None and known.chart.zones.closed_shoals is not None:
         met = [f"{reason} or shoal" if reason == REASONS[NO_GO] else reason for reason in met]
-    return f"{kept}; other water was refused: {', '.join(met[:3])}"
+    return f"{kept}; other ways were refused for: {', '.join(met[:3])}"
 
 
 def members_text(row: Mapping[str, Any], currency: str) -> str:
