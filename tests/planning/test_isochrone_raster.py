@@ -1,8 +1,11 @@
 """Times of passage between the nodes of a network, for the isochrones of maps."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from thalweg.planning.pareto.plan_assembly import _plot_context
 from thalweg.planning.plots.stage_passages import interpolated_between
 
 
@@ -38,3 +41,27 @@ def test_places_given_twice_and_nearly_in_a_line_change_nothing():
 def test_places_in_a_line_have_nothing_between_them():
     line = np.arange(5.0)[:, None] * np.array([1.0, 0.5])
     assert np.isnan(interpolated_between(line, line[:, 0], line + 0.1)).all()
+
+
+def test_times_of_a_map_are_by_one_set_of_canals_where_networks_overlap():
+    """Times by the Kiel Canal and round the Skaw, side by side, drew hundreds of closed lines."""
+
+    def explored(lon, arrive, spacing):
+        lon = np.asarray(lon, float)
+        network = SimpleNamespace(
+            lat=np.full(len(lon), 54.0), lon=lon, n_nodes=len(lon),
+            meta=SimpleNamespace(spacing_m=spacing),
+        )  # fmt: skip
+        return SimpleNamespace(
+            alternative=SimpleNamespace(network=network),
+            fastest=SimpleNamespace(arrive=arrive),
+            isochrones=np.full(len(lon), arrive),
+        )
+
+    slow = explored([4.02, 5.02, 9.0], 200.0, 65_000.0)
+    fast = explored([4.0, 5.0, 6.0], 100.0, 65_000.0)
+    context = SimpleNamespace(chart=None, sea=None, ship=None)
+    shown = _plot_context(context, [slow, fast])
+    assert sorted(zip(shown.lon.tolist(), shown.arrival.tolist())) == [
+        (4.0, 100.0), (5.0, 100.0), (6.0, 100.0), (9.0, 200.0),
+    ]  # fmt: skip

@@ -7,8 +7,11 @@ from collections import Counter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import MEAN_RADIUS, unit_vectors
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
@@ -57,6 +60,7 @@ from thalweg.route import Route
 #: Routes that end within this time of the end of the data are taken as limited by it [s].
 _SAME_PLACE = 5  # decimals of positions [deg] at which tracks are the same
 _DATA_END_MARGIN = 3.0 * HOUR
+_SAME_WATER = 1.5  # spacings of a network within which it has a node in the same water
 
 
 def assemble_trade_off_plan(
@@ -258,16 +262,32 @@ def _speeds_kn(trade_off: TradeOffContext) -> list[float | None]:
 
 
 def _plot_context(context: PlanningContext, explored: list[ExploredAlternative]) -> PlotContext:
-    """Return the data of the plots, with the earliest arrivals of all alternatives."""
-    networks = [one.alternative.network for one in explored]
+    """Return the data of the plots, with the earliest arrivals by the fastest alternative.
+
+    Others add their nodes in other water alone: times by two canals side by side are no surface.
+    """
+    first = min(explored, key=lambda one: one.fastest.arrive)
+    shown = [(one, _nodes_apart(one, first)) for one in explored]
     return PlotContext(
-        lat=np.concatenate([network.lat for network in networks]),
-        lon=np.concatenate([network.lon for network in networks]),
-        arrival=np.concatenate([one.isochrones for one in explored]),
+        lat=np.concatenate([one.alternative.network.lat[nodes] for one, nodes in shown]),
+        lon=np.concatenate([one.alternative.network.lon[nodes] for one, nodes in shown]),
+        arrival=np.concatenate([one.isochrones[nodes] for one, nodes in shown]),
         chart=context.chart,
         sea=context.sea,
         ship=context.ship,
     )
+
+
+def _nodes_apart(one: ExploredAlternative, first: ExploredAlternative) -> NDArray[np.int64]:
+    """Return the nodes of an alternative that are not in water where another one has some."""
+    if one is first:
+        return np.arange(one.alternative.network.n_nodes)
+    places, others = (
+        unit_vectors(alternative.network.lat, alternative.network.lon)
+        for alternative in (one.alternative, first.alternative)
+    )
+    reach = _SAME_WATER * first.alternative.network.meta.spacing_m / MEAN_RADIUS
+    return np.flatnonzero(cKDTree(others).query(places, distance_upper_bound=reach)[0] > reach)
 
 
 def _notes(
