@@ -32,7 +32,7 @@ _ON_BANKS: Final = 8.0 * NAUTICAL_MILE  # a berth within this of the inner line 
 LONGEST_CANAL_JOINT: Final = 3.5 * NAUTICAL_MILE
 _JOINT_FACTOR: Final = 3.0  # what a mile of a joint counts more: it may cross land
 _LEAST_PART: Final = 5.0 * NAUTICAL_MILE  # of a canal, or the way is no other than the approach
-_LENGTH_TOLERANCE: Final = 0.02  # of a leg that follows a line, relative
+_CUT_BENDS: Final = 0.25  # share of a line by which a leg from one of its bends to another is short
 
 
 def ways_through_canals(
@@ -106,7 +106,8 @@ def part_number_of_legs(
 
     Returns
     -------
-    int64 array (n - 1,) : Legs from an end of a canal to the other are not meant: they are -1.
+    int64 array (n - 1,) : Legs from an end of a canal to the other are not meant: they are -1. Legs
+        between two bends are, also where a file leaves out one between them.
     """
     number = np.full(len(lat) - 1, -1, np.int64)
     for k, canal in enumerate(canals):
@@ -121,7 +122,7 @@ def part_number_of_legs(
                 continue
             sailed = abs(there - here)
             whole = sailed >= canal.length - 2.0 * ON_LINE
-            slack = 2.0 * ON_LINE + _LENGTH_TOLERANCE * length
+            slack = 2.0 * ON_LINE + _CUT_BENDS * sailed
             if not whole and abs(sailed - length) <= slack and _is_inside(canal, here, there):
                 number[leg] = k
     return number

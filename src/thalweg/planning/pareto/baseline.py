@@ -71,7 +71,9 @@ def evaluate_weather_blind(
 def constant_speed_tracks(
     tracks: Sequence[Track], settings: NDArray[np.int64], evaluator: Evaluator
 ) -> list[tuple[int, Track]]:
-    """Return tracks chosen with the weather at up to six constant settings without waits.
+    """Return tracks chosen with the weather at constant settings without waits.
+
+    They are up to six settings, evenly spread, and that of the cheapest track.
 
     Parameters
     ----------
@@ -83,8 +85,10 @@ def constant_speed_tracks(
     list of (int, Track) : The cheapest and the fastest feasible track at each setting, with the
         number of the track given.
     """
-    found = []
-    for setting in spread_settings(settings, _MAX_SPEEDS):
+    spread = set(spread_settings(settings, _MAX_SPEEDS).tolist())
+    found: dict[int, list[tuple[int, Track]]] = {}
+    least: dict[int, float] = {}
+    for setting in settings.tolist():
         constant = [
             track.replaced(wait=None, setting=np.full(len(track) - 1, setting), speed=None)
             for track in tracks
@@ -92,9 +96,13 @@ def constant_speed_tracks(
         genomes = [Genome.from_track(track, settings=evaluator.settings) for track in constant]
         time, cost, violation = evaluator(genomes)
         feasible = np.flatnonzero(violation == 0.0)
-        front = feasible[non_dominated_indices(time[feasible], cost[feasible])]
-        found += [(int(k), constant[k]) for k in np.unique(front[[0, -1]] if len(front) else front)]
-    return found
+        if len(feasible):
+            front = feasible[non_dominated_indices(time[feasible], cost[feasible])]
+            found[setting] = [(int(k), constant[k]) for k in np.unique(front[[0, -1]])]
+            least[setting] = float(cost[feasible].min())
+    cheapest = min(least, key=least.__getitem__, default=None)
+    kept = [setting for setting in found if setting in spread or setting == cheapest]
+    return [one for setting in kept for one in found[setting]]
 
 
 def no_reference_note(blind: Sequence[Route]) -> str | None:
