@@ -280,6 +280,7 @@ def test_a_canal_is_written_with_its_bends_and_read_as_one_leg(tmp_path, canal):
     from dataclasses import replace
 
     from thalweg.chart import Chart
+    from thalweg.route.canal_legs import canal_legs
 
     chosen = Chart.gshhg("c").canals[canal]
     chart = replace(Chart.open_water(-89.0, 89.0, -180.0, 180.0), canals=(chosen,))
@@ -293,6 +294,13 @@ def test_a_canal_is_written_with_its_bends_and_read_as_one_leg(tmp_path, canal):
     again = evaluate(tmp_path / "canal.rtz", ship=ship(7.0), sea=Sea.calm(), chart=chart)
     assert again.time_h == pytest.approx(sailed.time_h, rel=1e-4)
     assert [row["leg_kind"] for row in again.waypoints()].count("canal") == 1
+    less = [place for place in again.track.positions if place not in chosen.path]
+    bends = [*chosen.path[:2], *chosen.path[3:]]  # without one: no second passage with its dues
+    edited = Track(*np.array([less[0], *bends, less[-1]]).T, 0.0)
+    parts = evaluate(edited, ship=ship(7.0), sea=Sea.calm(), chart=chart)
+    dues = [canal_legs(one, chart, ship(7.0)).fee.sum() for one in (track, edited)]
+    assert dues[1] == pytest.approx(dues[0]) and dues[0] > 0.0
+    assert parts.time_h == pytest.approx(sailed.time_h, rel=0.02)
 
 
 def _with_limits(port: float, starboard: float) -> str:

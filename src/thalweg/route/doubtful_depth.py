@@ -12,7 +12,7 @@ from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.canal_legs import canal_legs
+from thalweg.route.canal_legs import ApproachLeg, CanalPart, canal_legs
 from thalweg.route.passages_used import passages_used
 from thalweg.route.route import Route
 from thalweg.ship import Ship
@@ -65,12 +65,12 @@ def is_too_shallow(chart: Chart, route: Route, ship: Ship, too_little: BoolArray
     for k in _ends_at_sea(canal_or_approach.approach):  # as plans, which join approaches last
         end = float(route.track.lat[k]), float(route.track.lon[k])
         judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
-    in_canals = canal_or_approach.number[
-        (canal_or_approach.number >= 0) & ~canal_or_approach.approach
-    ]
-    for k in np.unique(in_canals).tolist():
-        for end in canal_or_approach.canals[k].ends:
-            judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
+    used = np.unique(canal_or_approach.number[canal_or_approach.number >= 0]).tolist()
+    in_canals = [canal_or_approach.canals[k] for k in used]
+    for canal in in_canals:
+        if not isinstance(canal, ApproachLeg) or isinstance(canal, CanalPart):
+            for end in canal.ends:
+                judged &= np.asarray(distance(lat, lon, *end)) >= _ENDS
     return np.asarray(too_little & judged)
 
 
