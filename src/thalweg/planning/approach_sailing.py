@@ -158,7 +158,8 @@ class ApproachSailing:
                 f"+{approach.length / NAUTICAL_MILE:.1f} nm {to} {approach.port.label} along its "
                 f"approach {approach.way}".rstrip()
                 + f" ({self._duration(approach) / HOUR:.1f} h at "
-                f"{self.speed / KNOT:.1f} kn, line {approach.quality}): counted in all totals; "
+                f"{self.speed / KNOT:.1f} kn{_in_canal_text(approach)}, line "
+                f"{approach.quality}): counted in all totals; "
                 "weather, tide and depth are not considered there."
                 + unknown_depth_text(approach, draught)
             )
@@ -375,3 +376,11 @@ def plan_along_approaches(
         plot_context=PlotContext(none, none, none, context.chart, context.sea, context.ship),
         front=front,
     )
+
+
+def _in_canal_text(approach: PortApproach) -> str:
+    """Return how far an approach leads through a canal, at the mean speed there, or ""."""
+    if not approach.through:
+        return ""
+    knots = approach.through_length / approach.through_time / KNOT
+    return f", of it {approach.through_length / NAUTICAL_MILE:.1f} nm in a canal at {knots:.1f} kn"
