@@ -105,6 +105,9 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
         }
         for name, row, bearing, line in zip(names, rows, bearings, lines)
     ]
+    for row in rows:
+        if row["leg_kind"] == "canal" and "heading_deg" in row:
+            row["heading_deg"] = row["course_deg"]  # samples do not have the bends
     return FileRoute(rows, vertices.cross_track, visits)
 
 
