@@ -13,7 +13,10 @@ from thalweg.chart.ports import PORTS
     [
         ("Baltimore, US", ["Chesapeake Bay Bridge"]),
         ("Tampa", ["Sunshine Skyway Bridge"]),
-        ("Philadelphia", ["Delaware Memorial Bridge", "Walt Whitman Bridge"]),
+        (
+            "Philadelphia",
+            ["Commodore Barry Bridge", "Delaware Memorial Bridge", "Walt Whitman Bridge"],
+        ),
         ("Rouen", ["Pont de Brotonne", "Pont de Tancarville", "Pont de Normandie"]),
         ("Montreal", ["Laviolette Bridge", "Quebec Bridge"]),
         ("Le Havre", []),

@@ -95,3 +95,6 @@ def test_bridges_over_an_approach_are_compared_with_the_air_draught():
     assert note.startswith(
         "Bridges over the approach of Baltimore, US: Chesapeake Bay Bridge (56.7"
     )
+    new_york = next(one for one in PORT_APPROACHES.all if one.label == "New York City, US")
+    (note,) = approach_limit_notes(chart, new_york, {"draught": 9.0})
+    assert note.startswith("Bridges over the approach of New York City, US: Verrazano Narrows (65")

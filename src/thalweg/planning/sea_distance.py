@@ -278,7 +278,8 @@ def _way_over_seas(
         too_deep = seas.closed_names - every.closed_names
         shut = closed_to_draught_notes(seas, too_deep, ends, way, draught=draught, offing=offing)
         notes += shut + _detours(seas, way, offing)
-        notes += closed_to_size_notes(seas, sizes, ends) if "air_draught" in sizes else ()
+        if "air_draught" in sizes:
+            notes += closed_to_size_notes(seas, sizes, ends, way, offing=offing)
     notes += seas.near_land_notes(way.at_sea, way.ends, offing=offing)
     if any(approach.through for approach in way.approaches):
         canals = _canals_entered(chart, way.line)

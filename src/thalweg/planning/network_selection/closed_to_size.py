@@ -9,7 +9,7 @@ from thalweg.chart.passages import Passage
 from thalweg.core.errors import NoRouteError
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.network_selection.closed_to_draught import LEAST_SAVED, LEAST_SHARE
-from thalweg.planning.network_selection.way_over_seas import way_over_seas
+from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
 from thalweg.planning.report.closed_way_report import (
     NarrowWay,
     notes_by_reason,
@@ -21,17 +21,22 @@ from thalweg.planning.seaways import Seaways
 
 
 def closed_to_size_notes(
-    seas: Seaways, sizes: Mapping[str, float | None], ends: Sequence[Endpoint]
+    seas: Seaways,
+    sizes: Mapping[str, float | None],
+    ends: Sequence[Endpoint],
+    way: WayOverSeas,
+    *,
+    offing: float,
 ) -> tuple[str, ...]:
     """Return a note on what beam, length or air draught close that would make a way shorter.
-
-    Ways are compared over the graph alone, so that the saving is about that.
 
     Parameters
     ----------
     seas : The seaways that the ship may use.
     sizes : Draught, beam, length and air draught [m], None where unknown.
     ends : With all ways from their berths, and with via points between them.
+    way : The shortest way that is open; what its approaches lead through has notes of its own.
+    offing : Distance from land that ways keep [m].
 
     Returns
     -------
@@ -49,16 +54,23 @@ def closed_to_size_notes(
         canals=tuple(name for name in seas.canals if name not in names),
         passages=tuple(name for name in seas.passages if name not in names),
     )
+    least = max(LEAST_SAVED, LEAST_SHARE * way.length)
     try:
-        usual, through = (
-            way_over_seas(one, ends, draught=draught, offing=None) for one in (seas, opened)
-        )
+        rough = [way_over_seas(one, ends, draught=draught, offing=None) for one in (seas, opened)]
+        if rough[0].length - rough[1].length < least:
+            return ()
+        through = way_over_seas(opened, ends, draught=draught, offing=offing)
     except NoRouteError:
         return ()
-    saved = usual.length - through.length
-    if saved < max(LEAST_SAVED, LEAST_SHARE * usual.length):
+    saved = way.length - through.length
+    if saved < least:
         return ()
-    used = {title_of_way(one): reasons[one] for one in ways_on_line(seas, too_small, through.line)}
+    passed = ways_on_line(seas, too_small, way.line)
+    used = {
+        title_of_way(one): reasons[one]
+        for one in ways_on_line(seas, too_small, through.line)
+        if one not in passed
+    }
     if not used:
         return ()
     about = ". ".join(note for _, note in notes_by_reason(used))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -60,6 +60,7 @@ def approach_limit_notes(
     sizes : Draught, beam, length and air draught of the ship [m], those that are known, by the
         names of `thalweg.chart.passages.Passage.ship_restriction`.
     """
+    every = (*chart.passages, *chart.closed_passages)  # the size of a ship may have closed it
     reasons = too_small_passages(chart, sizes)
     lat, lon = np.array(approach.line, float).T
     draught = sizes.get("draught") or 0.0
@@ -69,14 +70,25 @@ def approach_limit_notes(
         + ("Load less, or ask the port." if draught > one.max_draught else "Ask the port.")
         for _at, one in passages_crossed(chart.coastline, reasons, lat, lon)
     ]
-    return passages + _bridge_notes(approach, sizes.get("air_draught"))
+    low = [one for one in every if math.isfinite(one.max_air_draught)]
+    low = [one for _at, one in passages_crossed(chart.coastline, low, lat, lon)]
+    return passages + _bridge_notes(approach, sizes.get("air_draught"), low)
 
 
-def _bridge_notes(approach: PortApproach, air_draught: float | None) -> list[str]:
-    """Return notes on the bridges over an approach for an air draught [m]; None is not known."""
+def _bridge_notes(
+    approach: PortApproach, air_draught: float | None, low: Sequence[Passage]
+) -> list[str]:
+    """Return notes on the bridges over an approach.
+
+    Parameters
+    ----------
+    air_draught : Of the ship [m]; None where it is not known.
+    low : Named passages on the approach with a limit of the air draught.
+    """
     bridges = bridges_over(approach.line)
     if air_draught is None:
-        names = [f"{one.name} ({one.clearance:g} m)" for one in bridges]
+        names = [f"{one.name} ({one.max_air_draught:g} m)" for one in low]
+        names += [f"{one.name} ({one.clearance:g} m)" for one in bridges]
         return [
             f"Bridges over the approach of {approach.label}: {', '.join(names)}. The air draught "
             "of the ship is not known and was not compared."
