@@ -14,6 +14,7 @@ from thalweg.planning.seaways import Seaways, world_chart
         ("Paranagua", "CNBYQ", ((-55.0, 30.0),), -60.0),  # the wish of the user
         ("Santos", "Valparaiso", (), -60.0),  # round Cape Horn or by Magellan
         ("Bluff", "Montevideo", (), -60.0),
+        ("Melbourne", "Valparaiso", (), -50.0),
         ("Cape Town", "Durban", (), -60.0),  # never so far south
         ("Rotterdam", "New York", (), -60.0),
     ],

@@ -16,7 +16,7 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 #: Latitude [deg] that voyages do not pass by default, where no end is near it.
 ICEBERG_LATITUDE: Final = -50.0
-_ROUND_HORN: Final = (-110.0, -35.0)  # longitudes [deg] in which ways round Cape Horn pass it
+_CAPE_HORN: Final = (-51.0, -70.0, -64.0)  # ways south of the first and between the others pass it
 _MARGIN: Final = 3.0  # of ends [deg]
 _FAR_SOUTH: Final = -15.0  # voyages without an end south of this do not come near it [deg]
 _PIECE: Final = 60.0 * NAUTICAL_MILE
@@ -50,10 +50,13 @@ def southern_limit(
     canals = [name for path in paths for name in path_length_and_canals(waters.chart, path)[1]]
     corners = np.array([place for path in paths for place in path], float)
     lat, lon, _ = densify(corners[:, 0], corners[:, 1], _PIECE)
-    south = lat < ICEBERG_LATITUDE
-    west, east = _ROUND_HORN
-    by_horn = south & (lon > west) & (lon < east)
-    if not south.any() or by_horn.any() or any("Panama" in name for name in canals):
+    latitude, west, east = _CAPE_HORN
+    by_horn = (lat < latitude) & (lon > west) & (lon < east)
+    if (
+        not (lat < ICEBERG_LATITUDE).any()
+        or by_horn.any()
+        or any("Panama" in name for name in canals)
+    ):
         return lowest, []
     return ICEBERG_LATITUDE, [
         f"{SOUTH_LEFT_OUT}: the shortest way goes beyond, where icebergs are usual and the weather "

@@ -13,6 +13,7 @@ import numpy as np
 from thalweg.chart.depth.closed_shoals import CLOSED_SHOALS
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS, SHIP_RANGE
+from thalweg.planning.network_selection.southern_limit import SOUTH_LEFT_OUT
 from thalweg.planning.plan_front import least_words, not_rising, words_of_points
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
@@ -215,6 +216,8 @@ def quality_text(plan: PlanData) -> str:
     deep = ""
     if CLOSED_SHOALS in plan.proof.kind:
         deep = " in water that is deep enough by the depth layer"
+    if any(note.startswith(SOUTH_LEFT_OUT) for note in plan.notes):
+        deep += " north of 50 S"
     bounded = f"{_at_most(plan.gap, figure)}{_at_speeds(plan)}{deep}{_quality_of_front(plan)}"
     return f"{early}{bounded}{other_speeds}"
 

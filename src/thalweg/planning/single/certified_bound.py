@@ -16,6 +16,7 @@ from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
+from thalweg.planning.network_selection.southern_limit import ICEBERG_LATITUDE
 from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.planning.report.route_summary import canals_passed
 from thalweg.route import Route
@@ -329,6 +330,8 @@ def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str
         counted += [CLOSED_SHOALS] if zones.closed_shoals else []
         counted += ["canals"] if found.mesh is not None and found.mesh.links else []
     text += f" with {', '.join(counted)}" if counted else ""
+    if context.chart.area.south == ICEBERG_LATITUDE:
+        text += f", in water north of {-ICEBERG_LATITUDE:.0f} S"
     if context.chart.zones.has_penalty:
         text += ", without the penalties of zones, shoals and traffic lanes"
     return text + (f", in {found.sampling}" if found.sampling else "")
