@@ -11,6 +11,7 @@ from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.canals import KIEL, SUEZ, canals_with_dues
 from thalweg.chart.ports import PORTS
+from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
@@ -258,3 +259,10 @@ def test_a_port_on_a_canal_pays_its_dues_once():
 def test_a_port_within_the_bay_of_another_needs_no_way_out_of_it(start, goal, least, most):
     assert least < sea_distance(start, goal).nm < most
     assert least < sea_distance(goal, start).nm < most
+
+
+def test_a_port_inside_a_canal_that_is_closed_is_refused():
+    """Rendsburg - Gdynia without the Kiel Canal led over 11 nm of land to Eckernfoerde."""
+    with pytest.raises(NoRouteError, match="Rendsburg, DE lies inside the Kiel Canal, which is cl"):
+        sea_distance("Rendsburg", "Gdynia", avoid=["kiel"])
+    assert sea_distance("Rendsburg", "Gdynia").approaches[0][0].endswith("through the Kiel Canal")

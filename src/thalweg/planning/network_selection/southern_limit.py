@@ -11,16 +11,14 @@ import numpy as np
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import densify
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.chart_restrictions import ICEBERG_LATITUDE, SOUTH_LEFT_OUT
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
-#: Latitude [deg] that voyages do not pass by default, where no end is near it.
-ICEBERG_LATITUDE: Final = -50.0
 _CAPE_HORN: Final = (-51.0, -70.0, -64.0)  # ways south of the first and between the others pass it
 _MARGIN: Final = 3.0  # of ends [deg]
 _FAR_SOUTH: Final = -15.0  # voyages without an end south of this do not come near it [deg]
 _PIECE: Final = 60.0 * NAUTICAL_MILE
-SOUTH_LEFT_OUT: Final = "Water south of 50 S is left out"  #: a note on a longer way begins so
 
 
 def southern_limit(

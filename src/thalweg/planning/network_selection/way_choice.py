@@ -9,7 +9,10 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
 
+import numpy as np
+
 from thalweg.chart.approaches import PortApproach, line_between
+from thalweg.chart.canals import CANALS
 from thalweg.chart.port_limits.bridges import bridges_over
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, line_length
@@ -19,6 +22,7 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 _LEAST_GAIN: Final = 0.5 * NAUTICAL_MILE  # of another way than the approach of the table
+_LONGEST_ON_LAND: Final = 6.0 * NAUTICAL_MILE  # of a leg in a river that no coastline shows
 
 
 def with_chosen_ways(
@@ -74,7 +78,7 @@ def _has_choice(end: Endpoint) -> bool:
 def _best_pair(start: Endpoint, goal: Endpoint, seas: Seaways, draught: float) -> list[Endpoint]:
     """Return two ends by the ways that make the distance between them least."""
     open_canals = {c.name for c in seas.chart.canals} - set(seas.canals)
-    ways = [[way for way in _by_way(end) if _is_open(way, open_canals)] for end in (start, goal)]
+    ways = [_open_ways(end, seas, open_canals) for end in (start, goal)]
     pairs = [_Pair.of(a, b, seas) for a, b in product(*ways)]
     best, least = pairs[0], math.inf
     for number, pair in sorted(enumerate(pairs), key=lambda item: item[1].bound):
@@ -101,6 +105,38 @@ def _without_shallow_ways(end: Endpoint, draught: float) -> Endpoint:
 
 def _by_way(end: Endpoint) -> list[Endpoint]:
     return [end, *(end.by(way) for way in end.other_ways)]
+
+
+def _open_ways(end: Endpoint, seas: Seaways, canals: Collection[str]) -> list[Endpoint]:
+    """Return an end by its ways that are open.
+
+    Raises
+    ------
+    NoRouteError : For a berth inside a canal whose line by land alone is left: the canal is closed.
+    """
+    found = [way for way in _by_way(end) if _is_open(way, canals)]
+    through = [way.through for way in end.other_ways if way.through]
+    if not through or not _is_overland(end, seas):
+        return found
+    if found[1:]:
+        return found[1:]
+    titles = [canal.title for canal in CANALS if canal.name in through]
+    raise NoRouteError(
+        f"{end.name} lies inside the {' and the '.join(titles)}, which is closed here.",
+        "The canal is its only way to the sea: it is avoided, or too small for the ship.",
+        "Do not avoid it, or choose another port.",
+        reasons={},
+    )
+
+
+def _is_overland(end: Endpoint, seas: Seaways) -> bool:
+    """Return whether the line of an approach leads over land for miles: it is no way."""
+    if end.approach is None:
+        return False
+    lat, lon = np.array(end.approach.line, float).T
+    legs = lat[:-1], lon[:-1], lat[1:], lon[1:]
+    blocked = np.asarray(seas.chart.legs_blocked(*legs))
+    return bool(np.any(blocked & (np.asarray(distance(*legs)) > _LONGEST_ON_LAND)))
 
 
 def _is_open(end: Endpoint, canals: Collection[str]) -> bool:

@@ -13,7 +13,6 @@ import numpy as np
 from thalweg.chart.depth.closed_shoals import CLOSED_SHOALS
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS, SHIP_RANGE
-from thalweg.planning.network_selection.southern_limit import SOUTH_LEFT_OUT
 from thalweg.planning.plan_front import least_words, not_rising, words_of_points
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
@@ -28,6 +27,7 @@ from thalweg.planning.report.route_summary import (
     weather_on_route,
     weather_text,
 )
+from thalweg.planning.request.chart_restrictions import SOUTH_LEFT_OUT
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 from thalweg.ship.ship_assumptions import NO_DEPTH

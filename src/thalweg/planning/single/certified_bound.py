@@ -16,9 +16,9 @@ from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
-from thalweg.planning.network_selection.southern_limit import ICEBERG_LATITUDE
 from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.planning.report.route_summary import canals_passed
+from thalweg.planning.request.chart_restrictions import ICEBERG_LATITUDE
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
