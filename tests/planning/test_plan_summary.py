@@ -396,17 +396,16 @@ def test_what_the_referee_does_not_check_is_named_beside_kept_limits():
     unknown = SimpleNamespace(min_ukc_m=None)
     sands = kept_text(unknown, None, ("Crosses Goodwin Sands (charted as shoal area; known).",))
     assert sands == (
-        "kept: land, zones; depth under the keel TO BE CHECKED: the route crosses a charted shoal, "
-        "see the note"
+        "SEE THE NOTES on a charted shoal; otherwise kept: land, zones; depth under the keel NOT "
+        "checked"
     )
     against = f"{AGAINST_TRAFFIC} of Dover Strait for about 38 nm"
-    assert kept_text(unknown, None, (against,)).endswith(
-        "NOT checked; SEE THE NOTES on traffic lanes"
-    )
+    assert kept_text(unknown, None, (against,)).startswith("SEE THE NOTES on traffic lanes; other")
     small = f"{APPROACH_TOO_SMALL}: that of Baltimore, US"
     both = kept_text(SimpleNamespace(min_ukc_m=2.0), None, (against, small))
     assert both == (
-        "all kept; SEE THE NOTES on traffic lanes, the size of the ship in a port or passage"
+        "SEE THE NOTES on traffic lanes, the size of the ship in a port or passage; otherwise all "
+        "kept"
     )
 
 

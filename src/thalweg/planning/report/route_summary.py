@@ -43,6 +43,7 @@ _SAME_CLEARANCE: Final = 0.005  # [m]
 _TENTH: Final = 0.1  # by which waves in a wait are higher to be named [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SEE_NOTES: Final = {  # first words of notes on what the referee does not check, and its name
+    CROSSES_SHOAL: "a charted shoal",
     AGAINST_TRAFFIC: "traffic lanes",
     PORT_TOO_SHALLOW: "the size of the ship in a port or passage",
     APPROACH_TOO_SMALL: "the size of the ship in a port or passage",
@@ -322,12 +323,12 @@ def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
     """
     under_way = any(note.startswith(WAITS) for note in notes)
     seen = [what for first, what in _SEE_NOTES.items() if _any_starts(notes, first)]
-    also = f"; SEE THE NOTES on {', '.join(dict.fromkeys(seen))}" if seen else ""
+    first = f"SEE THE NOTES on {', '.join(dict.fromkeys(seen))}; otherwise " if seen else ""
     if route.min_ukc_m is not None:
         where = ["under way, see the note on the wait"] if under_way else []
         if any(note.startswith(SQUAT_UNCOUNTED) for note in notes):
             where.append("at rest, NOT with squat: see the note on the clearance")
-        return " ".join(("all kept", "; ".join(where))).rstrip() + also
+        return first + " ".join(("all kept", "; ".join(where))).rstrip()
     checked = ["land", "zones"]
     if ship is not None:
         named = (("waves", ship.limits.wave_height), ("wind", ship.limits.wind_speed))
@@ -335,13 +336,11 @@ def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:
         limited += ["safety and comfort in waves"] if ship.limits.safety is not None else []
         checked += [f"{what} under way" for what in limited] if under_way else limited
     depth = "NOT checked"
-    if _any_starts(notes, CROSSES_SHOAL):
-        depth = "TO BE CHECKED: the route crosses a charted shoal, see the note"
-    elif _any_starts(notes, CHECK_DEPTH):
+    if _any_starts(notes, CHECK_DEPTH):
         depth = "TO BE CHECKED: the depth layer has too little, see the note"
     required = 0.0 if ship is None else ship.min_under_keel_clearance
     depth += f" (the ship file requires {required:g} m: give --depth FILE)" if required else ""
-    return f"kept: {', '.join(checked)}; depth under the keel {depth}{also}"
+    return f"{first}kept: {', '.join(checked)}; depth under the keel {depth}"
 
 
 def _any_starts(notes: Sequence[str], first: str) -> bool:
