@@ -116,6 +116,25 @@ def test_antarctic_pack_ice_reaches_north_until_november(lat, lon, months):
     assert tuple(sorted(found)) == months
 
 
+@pytest.mark.parametrize(
+    ("lat", "lon", "inside"),
+    [
+        (-37.0, 80.0, True),  # Durban - Fremantle
+        (-34.0, 80.0, False),
+        (-34.5, 0.0, True),
+        (-33.5, 0.0, False),
+        (-34.0, -140.0, True),
+        (-42.0, 150.0, False),  # off Tasmania the boundary goes south
+        (-30.0, -60.0, False),
+    ],
+)
+def test_the_winter_load_line_applies_in_the_southern_winter_zone(lat, lon, inside):
+    found = ice_warnings(route([lat, lat], [lon, lon + 0.5], "2026-07-01"), Sea.calm())
+    assert any("winter load line" in note for note in found) == inside
+    summer = ice_warnings(route([lat, lat], [lon, lon + 0.5], "2026-01-01"), Sea.calm())
+    assert not any("winter load line" in note for note in summer)
+
+
 def test_a_route_far_south_in_august_notes_pack_ice_icebergs_and_the_winter_load_line():
     south = ([-34.0, -53.0, -60.0, -57.0, -41.5], [18.0, 50.0, 85.0, 120.0, 175.0])
     pack, icebergs, load_line = ice_warnings(route(*south, "2026-08-20"), Sea.calm())

@@ -24,7 +24,13 @@ _LATITUDE: Final = 72.0  #: [deg] beyond which ice is likely in all months
 _OPEN_WATER: Final = 0.1  #: greatest concentration of ice that counts as open water
 REACHES_ICE: Final = "The route reaches"  #: a note on ice begins so
 _SPACING: Final = 20.0 * NAUTICAL_MILE  #: of the places at which ways without a date are tested [m]
-_SOUTH: Final = -50.0  #: [deg] south of which all water is in the zone below
+#: Northern boundary of the Southern Winter Seasonal Zone (lon, lat) [deg], rhumb lines: Load Lines
+#: Convention 1966, Annex II, regulation 48; round Tasmania and South America roughly.
+_WINTER_ZONE: Final = (
+    (-75.0, -41.0), (-73.883, -41.783), (-65.88, -47.1), (-50.0, -34.0), (17.0, -34.0),
+    (20.0, -35.167), (28.0, -34.0), (118.0, -35.5), (144.7, -40.7), 
+    (147.3, -43.5), (167.7, -47.1), (170.0, -47.0), (190.0, -33.0), (281.0, -33.0),
+)  # fmt: skip
 #: Winter in the Southern Winter Seasonal Zone, as (month, day).
 _SOUTHERN_WINTER: Final = ((4, 16), (10, 15))
 _ADVICE: Final = "give a via point or a no-go zone if that water is closed"
@@ -72,7 +78,7 @@ def ice_warnings(route: Route, sea: Sea) -> list[str]:
             f"({area.source}), and the data have none: read the {charts}. Ice is not "
             f"modelled: {_ADVICE}."
         )
-    notes += _load_line_notes(time, lat)
+    notes += _load_line_notes(time, lat, lon)
     far = np.where(unknown, np.abs(lat), 0.0)
     worst = int(np.argmax(far))
     if far[worst] < _LATITUDE:
@@ -127,13 +133,15 @@ def way_left_out_notes(start: Position, goal: Position, length: float) -> tuple[
     )
 
 
-def _load_line_notes(time: FloatArray, lat: FloatArray) -> list[str]:
-    """Return a note on the winter load line far south, where boundaries do not matter."""
+def _load_line_notes(time: FloatArray, lat: FloatArray, lon: FloatArray) -> list[str]:
+    """Return a note on the winter load line in the Southern Winter Seasonal Zone, by its dates."""
     days = time.astype("datetime64[s]").astype("datetime64[D]")
     day = (days - days.astype("datetime64[M]")).astype(np.int64) + 1
     of_year = 100 * _months(time) + day
     first, last = (100 * month + day for month, day in _SOUTHERN_WINTER)
-    if not np.any((lat < _SOUTH) & (of_year >= first) & (of_year <= last)):
+    corners = np.array(_WINTER_ZONE)
+    boundary = np.interp(lon, corners[:, 0], corners[:, 1], period=360.0)
+    if not np.any((lat < boundary) & (of_year >= first) & (of_year <= last)):
         return []
     return [
         "The winter load line applies from 16 April to 15 October where the route is in the "
