@@ -129,6 +129,11 @@ def with_bound(answer, certain, kind="certificate"):
             "certificate, with land, closed shoals",
             "at most 3.7 % less time is possible in water that is deep enough by the depth layer",
         ),
+        (
+            0.963,
+            "certificate, in water north of 60 S, without penalties",
+            "at most 3.7 % less time is possible north of 60 S",
+        ),
         (np.nan, "no bound: the route ends at a pole", "no bound: the route ends at a pole"),
         (0.0, "certificate", "no bound was found"),
     ],

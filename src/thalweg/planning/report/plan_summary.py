@@ -27,7 +27,7 @@ from thalweg.planning.report.route_summary import (
     weather_on_route,
     weather_text,
 )
-from thalweg.planning.request.chart_restrictions import SOUTH_LEFT_OUT
+from thalweg.planning.request.chart_restrictions import IN_WATER, SOUTH_LEFT_OUT
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 from thalweg.ship.ship_assumptions import NO_DEPTH
@@ -216,8 +216,10 @@ def quality_text(plan: PlanData) -> str:
     deep = ""
     if CLOSED_SHOALS in plan.proof.kind:
         deep = " in water that is deep enough by the depth layer"
+    latitudes = plan.proof.kind.partition(IN_WATER)[2].partition(",")[0].partition(";")[0]
     if any(note.startswith(SOUTH_LEFT_OUT) for note in plan.notes):
-        deep += " north of 50 S"
+        latitudes = latitudes or "north of 50 S"
+    deep += f" {latitudes}" if latitudes else ""
     bounded = f"{_at_most(plan.gap, figure)}{_at_speeds(plan)}{deep}{_quality_of_front(plan)}"
     return f"{early}{bounded}{other_speeds}"
 

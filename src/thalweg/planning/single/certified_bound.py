@@ -18,7 +18,7 @@ from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
 from thalweg.planning.planning_context import PlanningContext, greatest_speed_of
 from thalweg.planning.report.route_summary import canals_passed
-from thalweg.planning.request.chart_restrictions import ICEBERG_LATITUDE
+from thalweg.planning.request.chart_restrictions import IN_WATER
 from thalweg.route import Route
 from thalweg.sea import Sea
 from thalweg.search import LowerBound
@@ -53,6 +53,7 @@ TABLE_MARGIN = 1e-3
 #: A bound this share above the value of a route contradicts it.
 _CONTRADICTION = 2e-3
 _NOT_SAILED = "no bound: the route breaks a limit"
+_NEAR_LIMIT = 1.0  # of the latitudes of a chart, at which a bound names them [deg]
 LONGEST_PROOF = 30.0  #: by default [s]
 _SHORTEST_PROOF = 1.0
 _FOR_SMALL_SHIPS = "small_or_local"  # use of passages that save little
@@ -330,11 +331,19 @@ def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str
         counted += [CLOSED_SHOALS] if zones.closed_shoals else []
         counted += ["canals"] if found.mesh is not None and found.mesh.links else []
     text += f" with {', '.join(counted)}" if counted else ""
-    if context.chart.area.south == ICEBERG_LATITUDE:
-        text += f", in water north of {-ICEBERG_LATITUDE:.0f} S"
+    text += _latitudes(context, route)
     if context.chart.zones.has_penalty:
         text += ", without the penalties of zones, shoals and traffic lanes"
     return text + (f", in {found.sampling}" if found.sampling else "")
+
+
+def _latitudes(context: PlanningContext, route: Route) -> str:
+    """Return the latitudes of the water of a bound, where the route is near them, as text."""
+    area, lat = context.chart.area, np.asarray(route.track.lat, float)
+    south = f"north of {-area.south:g} S" if lat.min() < area.south + _NEAR_LIMIT < 0.0 else ""
+    north = f"south of {area.north:g} N" if lat.max() > area.north - _NEAR_LIMIT > 0.0 else ""
+    named = " and ".join(filter(None, (south, north)))
+    return f", {IN_WATER}{named}" if named and area.width >= 360.0 else ""
 
 
 def _passage(context: PlanningContext, route: Route) -> StretchToBound:
