@@ -394,6 +394,9 @@ def test_champions_and_differences_in_words():
         for t, c in ((260, 491.5), (300, 473.8), (354, 471.8), (769, 975.5))
     ]
     assert champions(dear)["cost"] == 2  # 2 less than the faster one
+    near = [fast | other | {"inshore_percent": share} for share in (18.0, 20.0, 40.0)]
+    assert "inshore_percent" not in champions(near[:2])  # no shelter worth the word
+    assert champions(near)["inshore_percent"] == 2
     close = calm | {"sick_percent": 29.6}  # in a table both are 30 %
     assert "sick_percent" not in champions([fast | other, close | other])
     nearly = [calm | other | {"sick_percent": value} for value in (8.8, 7.9)]

@@ -119,3 +119,11 @@ def test_a_constant_speed_is_sailed_on_its_cheapest_and_fastest_track():
     ]
     closed = [(1.0, 1.0, 1.0)] * 3
     assert constant_speed_tracks(tracks, np.arange(2), Tabulated([closed, closed])) == []
+
+
+def test_the_constant_speed_of_least_cost_is_sailed_beside_the_evenly_spread_ones():
+    """Gdynia - Rotterdam was planned at 14.3 kn, where 14.1 kn cost 0.6 % less."""
+    tracks = [Track([0.0, 0.0, 0.0], [0.0, 1.0, 2.0], 0.0, None, [0, 1])]
+    scores = [[(30.0 - k, 100.0 + (k - 3) ** 2, 0.0)] for k in range(12)]
+    found = constant_speed_tracks(tracks, np.arange(12), Tabulated(scores))
+    assert [int(track.setting[0]) for _, track in found] == [0, 2, 3, 4, 7, 9, 11]

@@ -245,15 +245,16 @@ class _Candidates:
         yield from tracks[1:]
 
     def _fastest_way_at_one_speed(self, longest: float) -> list[Route]:
-        """Return the fastest route at each lower setting that keeps the limits in a time [s]."""
+        """Return the fastest route at each setting that keeps the limits in a time [s]."""
         track = self.best["time"].track
-        found = [
-            self.context.evaluate(
-                replace(track, setting=np.full(len(track) - 1, setting)), self.terms
-            )
+        if np.any(track.wait > 0.0):  # made for the times of the fastest
+            return []
+        legs = len(track) - 1
+        tracks = [
+            track.replaced(setting=np.full(legs, setting), speed=None)
             for setting in self.trade_off.settings
-            if not np.any(track.wait > 0.0)  # made for the times of the fastest
         ]
+        found = [self.context.evaluate(one, self.terms) for one in tracks]
         latest = min(self.context.latest_arrival, track.depart + longest)
         return [route for route in found if route.feasible and route.arrive <= latest]
 

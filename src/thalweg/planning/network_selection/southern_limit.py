@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.chart.passage_crossings import crossing_place
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import densify
 from thalweg.core.units import NAUTICAL_MILE
@@ -15,7 +16,8 @@ from thalweg.planning.request.chart_restrictions import ICEBERG_LATITUDE, SOUTH_
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 
-_CAPE_HORN: Final = (-51.0, -70.0, -64.0)  # ways south of the first and between the others pass it
+#: A way that crosses this line goes round South America, by the Horn, Le Maire or Magellan.
+_SOUTH_OF_AMERICA: Final = ((-50.0, -67.28), (-65.0, -67.28))
 _MARGIN: Final = 3.0  # of ends [deg]
 _FAR_SOUTH: Final = -15.0  # voyages without an end south of this do not come near it [deg]
 _PIECE: Final = 60.0 * NAUTICAL_MILE
@@ -48,13 +50,9 @@ def southern_limit(
     canals = [name for path in paths for name in path_length_and_canals(waters.chart, path)[1]]
     corners = np.array([place for path in paths for place in path], float)
     lat, lon, _ = densify(corners[:, 0], corners[:, 1], _PIECE)
-    latitude, west, east = _CAPE_HORN
-    by_horn = (lat < latitude) & (lon > west) & (lon < east)
-    if (
-        not (lat < ICEBERG_LATITUDE).any()
-        or by_horn.any()
-        or any("Panama" in name for name in canals)
-    ):
+    if not (lat < ICEBERG_LATITUDE).any() or "Panama Canal" in canals:
+        return lowest, []
+    if crossing_place(lat, lon, *_SOUTH_OF_AMERICA) is not None:
         return lowest, []
     return ICEBERG_LATITUDE, [
         f"{SOUTH_LEFT_OUT}: the shortest way goes beyond, where icebergs are usual and the weather "
