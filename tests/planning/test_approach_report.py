@@ -90,7 +90,11 @@ def test_bridges_over_an_approach_are_compared_with_the_air_draught():
         "air draught of 60 m is over its clearance of 56.7 m (general knowledge, unchecked)."
     )
     assert count_of_dangers([note]) == 1
-    assert approach_limit_notes(chart, baltimore, {"draught": 9.0, "air_draught": 50.0}) == []
+    (note,) = approach_limit_notes(chart, baltimore, {"draught": 9.0, "air_draught": 56.7})
+    assert note.startswith("Low bridge: the approach of Baltimore, US leads under Chesapeake Bay")
+    assert "the air draught of 56.7 m leaves 0.0 m of its clearance of 56.7 m" in note
+    assert count_of_dangers([note]) == 1
+    assert approach_limit_notes(chart, baltimore, {"draught": 9.0, "air_draught": 54.6}) == []
     (note,) = approach_limit_notes(chart, baltimore, {"draught": 9.0})
     assert note.startswith(
         "Bridges over the approach of Baltimore, US: Chesapeake Bay Bridge (56.7"

@@ -684,3 +684,21 @@ def test_history_networks_are_checked_when_they_arrive(client):
     assert "history network" in problem(answer, 422)["asked"]
     assert client.get("/api/v1/histories").json() == []
     problem(client.delete("/api/v1/histories/0123456789abcdef"), 404)
+
+
+def test_a_request_that_is_not_json_states_the_content_type_that_is_needed(client):
+    sent = client.post(
+        "/api/v1/plans", content=json.dumps(SHORT), headers={"Content-Type": "text/plain"}
+    )
+    found = problem(sent, 415)
+    assert found["asked"] == "The body has the content type text/plain."
+    assert "Content-Type: application/json" in found["remedy"]
+    found = problem(client.post("/api/v1/plans", json=[SHORT]), 422)
+    assert found["asked"] == "The body is no mapping of entries."
+
+
+def test_a_missing_entry_is_described(client):
+    sent = client.post("/api/v1/plans", json={k: SHORT[k] for k in SHORT if k != "seas"})
+    found = problem(sent, 422)
+    assert found["asked"] == "seas is missing." and found["remedy"] == "Add seas."
+    assert found["possible"] == "It is needed: `calm`, `storm` or ids of /seas, by priority."

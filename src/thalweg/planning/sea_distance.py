@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -21,12 +20,14 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
+from thalweg.network.global_grid.ice_limits import ICE_LATITUDES
 from thalweg.planning.network_selection.closed_to_draught import closed_to_draught_notes
 from thalweg.planning.network_selection.closed_to_size import closed_to_size_notes
 from thalweg.planning.network_selection.closed_ways import closed_way_error
 from thalweg.planning.network_selection.seas_of_distance import opened_names, seas_and_every
+from thalweg.planning.network_selection.southern_limit import southern_limit
 from thalweg.planning.network_selection.way_choice import with_chosen_ways, without_small_ways
-from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
+from thalweg.planning.network_selection.way_over_seas import way_over_seas
 from thalweg.planning.report.approach_report import (
     approach_limit_notes,
     port_depth_note,
@@ -43,7 +44,6 @@ from thalweg.planning.report.distance_report import (
 from thalweg.planning.report.ice_report import ice_notes_of_way, way_left_out_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint, resolve_places
 from thalweg.planning.seaways import (
-    Seaways,
     path_length_and_canals,
     small_passages,
     world_chart,
@@ -209,9 +209,10 @@ def sea_distance(
     -----
     The way is the shortest over a graph of all seas, where water within 2 nautical miles of land
     counts up to half more, after string pulling. Passages for small or local ships are closed.
-    Water north of 72 N and south of 60 S is used only by ways that begin or end there. Traffic
-    rules and weather are not considered. The graph is made once (10 to 20 s) and kept in
-    the cache.
+    Water north of 72 N and south of 60 S is used only by ways that begin or end there, and in the
+    open ocean water south of 50 S only by ways that have an end or a via point near it; a note
+    states how much longer that makes the way. Traffic rules and weather are not considered. The
+    graph is made once (10 to 20 s) and kept in the cache.
     """
     chart = world_chart() if chart is None else chart
     check_offing(offing_nm)
@@ -251,6 +252,8 @@ def _way_over_seas(
     """Return the shortest way with some passages open; offing and sizes of the ship [m]."""
     draught = sizes["draught"]
     seas, every = seas_and_every(chart, ends, closed, opened, draught)
+    south, far_south = southern_limit(ends, lambda: seas, ICE_LATITUDES[0])
+    seas = replace(seas, south=south) if far_south else seas
     try:
         way = way_over_seas(seas, ends, draught=draught, offing=offing)
     except NoRouteError as error:
@@ -258,7 +261,7 @@ def _way_over_seas(
         own = {"length": 0.0, **{name: size for name, size in sizes.items() if size is not None}}
         named = closed_way_error(seas, chosen, own, opens="air_draught" in sizes)
         raise named or error from None
-    notes = tuple(end.note for end in way.ends if end.note)
+    notes = (*(end.note for end in way.ends if end.note), *far_south)
     texts = []
     for one in way.approaches:
         if draught is not None:
@@ -277,7 +280,8 @@ def _way_over_seas(
     if draught is not None:
         too_deep = seas.closed_names - every.closed_names
         shut = closed_to_draught_notes(seas, too_deep, ends, way, draught=draught, offing=offing)
-        notes += shut + _detours(seas, way, offing)
+        length = way.length - sum(approach.length for approach in way.approaches)
+        notes += shut + shoal_detour_notes(seas, way.ends, length, offing=offing)
         if "air_draught" in sizes:
             notes += closed_to_size_notes(seas, sizes, ends, way, offing=offing)
     notes += seas.near_land_notes(way.at_sea, way.ends, offing=offing)
@@ -298,22 +302,6 @@ def _way_over_seas(
     notes += () if shut else roundabout_notes(way.line, way.length)
     approaches = tuple((a.label, a.length) for a in way.approaches)
     return SeaDistance(*names, way.length, canals, straits, approaches, way.line, notes)
-
-
-def _detours(seas: Seaways, way: WayOverSeas, offing: float) -> tuple[str, ...]:
-    """Return how much longer shoals make a way, as a note; offing [m]."""
-    without = replace(seas, shoals=None)
-    legs = list(itertools.pairwise(way.ends))
-    near = sum(approach.length for approach in way.approaches)
-
-    def length(paths: Iterable[list[Position]]) -> float:
-        return sum(path_length_and_canals(seas.chart, path)[0] for path in paths)
-
-    return shoal_detour_notes(
-        way.length - near,
-        length(without.graph_path(*leg) for leg in legs),
-        lambda: length(without.path(*leg, offing=offing) for leg in legs),
-    )
 
 
 def small_ship_distance(

@@ -60,12 +60,14 @@ class Seaways:
     canals : Names of canals of the chart that are not used.
     passages : Names of passages of the chart that are not used.
     shoals : Shoal water, in which a mile counts more.
+    south : Latitude that no way passes [deg].
     """
 
     chart: Chart
     canals: tuple[str, ...] = ()
     passages: tuple[str, ...] = ()
     shoals: Shoals | None = None
+    south: float = -90.0
 
     @classmethod
     def of_chart(cls, chart: Chart, avoid: Sequence[str], *, opened: Sequence[str] = ()) -> Seaways:
@@ -94,7 +96,8 @@ class Seaways:
     def of_ship_chart(cls, chart: Chart, *, every_passage: bool = False) -> Seaways:
         """Return the seaways of the world without what the chart of a plan closes.
 
-        They have all passages for small ships, or none, so that few graphs are made.
+        They have all passages for small ships, or none, so that few graphs are made, and the
+        southern limit of the chart.
 
         Parameters
         ----------
@@ -107,7 +110,8 @@ class Seaways:
         shut = tuple(canal.name for canal in world.chart.canals if canal.name not in canals)
         open_here = {passage.name for passage in world.chart.passages}
         closed = tuple(p.name for p in chart.closed_passages if p.name in open_here)
-        return cls(world.chart, shut, closed)
+        south = chart.area.south if chart.area.width >= 360.0 else -90.0
+        return cls(world.chart, shut, closed, south=south)
 
     def without(self, name: str) -> Seaways:
         """Return the seaways with one more canal or passage closed, by its name."""
@@ -159,7 +163,7 @@ class Seaways:
         canals = self.chart.canals
         closed = [k for k, canal in enumerate(canals) if canal.name in self.canals]
         excess = None if self.shoals is None else edge_excess(self.chart, self.shoals)
-        return GraphClosures(closed, find_passages(self.passages), self.shoals, excess)
+        return GraphClosures(closed, find_passages(self.passages), self.shoals, excess, self.south)
 
     def path(self, start: Endpoint, goal: Endpoint, *, offing: float) -> list[Position]:
         """Return the waypoints of the shortest way between two end points.
@@ -177,8 +181,9 @@ class Seaways:
         if float(distance(*ends[0], *ends[1])) < 1.0:
             return [ends[0]]
         chart = self._open_chart
-        south = ICE_LATITUDES[0] if outside_ice(*ends) else -90.0
-        if (north := northern_limit(*ends)) < 90.0:
+        south = max(ICE_LATITUDES[0] if outside_ice(*ends) else -90.0, self.south)
+        north = northern_limit(*ends)
+        if north < 90.0 or self.south > -90.0:
             chart = chart.within(south, north, -180.0, 180.0)
         off_land = _off_land(chart, ends, offing)
         over = replace(self, shoals=None).graph_path(start, goal)

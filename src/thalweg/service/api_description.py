@@ -67,7 +67,7 @@ _MEANINGS: Final = {
     "404": "It does not exist, or the request names something that does not.",
     "409": "The job has no result yet, or another request uses this key.",
     "413": "The body is too large.",
-    "415": "The ending of the file is not known.",
+    "415": "The ending of the file, or the content type of the request, is not known.",
     "422": "The request is not possible; `field` names the entry.",
     "429": "The queue of jobs is full; `Retry-After` says when to try again.",
     "507": "The storage is full.",
@@ -133,7 +133,7 @@ def _errors_of(path: str, method: str, operation: Mapping[str, Any]) -> list[str
     if method == "post":
         found.append("413")
         if last in _STARTS:
-            found += ["409", "429"]
+            found += ["409", "415", "429"]
         if last in _UPLOADS:
             found += ["415", "507"]
     elif (method == "delete" and path.startswith("/api/v1/seas/")) or (

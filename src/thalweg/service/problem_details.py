@@ -32,7 +32,7 @@ _TITLES: Final = {
     405: "Not possible here",
     409: "In conflict",
     413: "Too large",
-    415: "Kind of file not known",
+    415: "Kind of content not known",
     422: "Not possible",
     429: "Too many jobs",
     507: "Storage full",
@@ -42,6 +42,8 @@ _PARTS: Final = ("asked", "possible", "remedy")
 _SHAPES: Final = {
     "missing": "is missing",
     "extra_forbidden": "is not a known entry",
+    "model_attributes_type": "is no mapping of entries",
+    "dict_type": "is no mapping of entries",
 }
 #: What a value may be, by the kind of fault, with the entries of its context.
 _BOUNDS: Final = {
@@ -193,6 +195,8 @@ def add_problem_handlers(
         for fault in error.errors():
             if fault["loc"][0] == "path" and fault["type"] == "string_pattern_mismatch":
                 return problem_response(_unknown_path(str(fault["loc"][-1]), fault["input"]))
+        if (unread := _unread_content(request, error)) is not None:
+            return problem_response(unread)
         faults: Sequence[ThalwegError] = faults_of(request, error.body)
         faults = faults or shape_faults(error.errors())
         first = _shape_error(error)
@@ -208,6 +212,20 @@ def add_problem_handlers(
         )
         remedy = "The paths are listed at /api/docs and in /openapi.json."
         return problem_response(ServiceError(error.status_code, asked, "", remedy))
+
+
+def _unread_content(request: Request, error: RequestValidationError) -> ServiceError | None:
+    """Return the error for a body that was not read as JSON because of its content type."""
+    kind = request.headers.get("content-type", "").partition(";")[0].strip()
+    whole = any(tuple(fault["loc"]) == ("body",) for fault in error.errors())
+    if not whole or kind == "application/json" or kind.endswith("+json"):
+        return None
+    return ServiceError(
+        415,
+        f"The body has the content type {kind[:80]}." if kind else "The body has no content type.",
+        "Requests are JSON.",
+        "Send it with the header Content-Type: application/json.",
+    )
 
 
 def _unknown_path(name: str, given: str) -> ServiceError:
@@ -267,6 +285,11 @@ def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> Service
     what = _SHAPES.get(first["type"], f"is not possible: {first['msg']}")
     possible = "The form of requests is in /openapi.json, with examples."
     remedy = f"Correct {name}." if place else "Correct the request."
+    if first["type"] == "missing":
+        remedy = f"Add {name}."
+        entry = None if model is None or len(place) != 1 else model.model_fields.get(place[0])
+        if entry is not None and entry.description:
+            possible = f"It is needed: {entry.description}."
     if first["type"] == "extra_forbidden" and model is not None and len(place) == 1:
         remedy = _meant(place[0], model) or f"Leave {name} out."
         possible = f"A request has the entries {', '.join(sorted(model.model_fields))}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -56,6 +56,9 @@ class ClearWater:
 
     off_land: Chart
     shoals: Shoals | None
+    _known: dict[tuple[float, ...], float] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def pulled(
         self,
@@ -136,6 +139,16 @@ class ClearWater:
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
     ) -> FloatArray:
         """Return the length of legs [m], more near land and over shoals."""
+        legs = list(zip(lat1.tolist(), lon1.tolist(), lat2.tolist(), lon2.tolist()))
+        new = np.flatnonzero([leg not in self._known for leg in legs])
+        if len(new):  # string pulling asks for nearly half of the legs again
+            costs = self._cost(lat1[new], lon1[new], lat2[new], lon2[new])
+            self._known.update(zip([legs[k] for k in new.tolist()], costs.tolist()))
+        return np.array([self._known[leg] for leg in legs], float)
+
+    def _cost(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> FloatArray:
         length = leg_lengths(lat1, lon1, lat2, lon2)
         cost = length.copy()
         near = np.flatnonzero(self.off_land.legs_blocked(lat1, lon1, lat2, lon2))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -71,12 +71,14 @@ class GraphClosures:
     passages : Passages that are closed in the chart but not in the graph.
     shoals : Shoal water, in which a mile counts more.
     excess : By how much it does on each edge of the graph, where known (`SeaGraph.shoal_excess`).
+    south : Latitude that no edge passes [deg].
     """
 
     canals: Sequence[int] = ()
     passages: Sequence[Passage] = ()
     shoals: Shoals | None = None
     excess: FloatArray | None = field(default=None, repr=False)
+    south: float = -90.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,8 +176,13 @@ class SeaGraph:
     ) -> FloatArray:
         """Return the weights for a way between two ends, inf where it may not go."""
         closed = (*closures.canals, *_closed_in_ice(*ends))
-        closed_here = _Closed(chart.fingerprint(), closed, tuple(closures.passages), chart)
-        return _weight_without(self, closed_here)
+        facts = chart.fingerprint(), closed, tuple(closures.passages), closures.south
+        return _weight_without(self, _Closed(*facts, chart))
+
+    @cached_property
+    def tails(self) -> IntArray:
+        """Tail of each edge."""
+        return np.repeat(np.arange(len(self.waters.lat)), np.diff(self.indptr))
 
     def _shortest(
         self,
@@ -236,18 +243,18 @@ class SeaGraph:
 
     def shoal_excess(self, shoals: Shoals) -> FloatArray:
         """Return by how much a mile counts more on each edge; 0 in canals."""
-        excess = np.zeros(len(self.target))
-        at_sea = np.flatnonzero(self.canal < 0)
+        excess, at_sea = np.zeros(len(self.target)), np.flatnonzero(self.canal < 0)
         excess[at_sea] = self._excess_of(shoals, at_sea)
         return excess
 
     def shoal_excess_round_harbours(self, shoals: Shoals, elsewhere: FloatArray) -> FloatArray:
         """Return `shoal_excess` of shoals with harbours, given the one without these."""
         excess = elsewhere.copy()
-        tail = np.repeat(np.arange(len(self.waters.lat)), np.diff(self.indptr))
         for place in geocentric_unit_vectors(*np.array(shoals.harbours).T):
             away = np.arccos(np.clip(self.waters.vectors @ place, -1.0, 1.0)) * MEAN_RADIUS
-            near = np.flatnonzero((away[tail] - self.weight < _ROUND_HARBOUR) & (self.canal < 0))
+            near = np.flatnonzero(
+                (away[self.tails] - self.weight < _ROUND_HARBOUR) & (self.canal < 0)
+            )
             excess[near] = self._excess_of(shoals, near)
         return excess
 
@@ -259,8 +266,7 @@ class SeaGraph:
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return latitudes and longitudes [deg] of the tails and heads of edges."""
         lat, lon = self.waters.lat, self.waters.lon
-        tail = np.repeat(np.arange(len(lat)), np.diff(self.indptr))[edges]
-        head = self.target[edges]
+        tail, head = self.tails[edges], self.target[edges]
         return lat[tail], lon[tail], lat[head], lon[head]
 
     def _with_links(
@@ -290,6 +296,7 @@ class _Closed:
     fingerprint: str
     canals: tuple[int, ...]
     passages: tuple[Passage, ...]
+    south: float
     chart: Chart = field(compare=False, repr=False)
 
 
@@ -299,10 +306,8 @@ def _weight_without(graph: SeaGraph, closed: _Closed) -> FloatArray:
     weight = graph.weight.copy()
     if closed.canals:
         weight[np.isin(graph.canal, closed.canals)] = np.inf
-    lat, lon = graph.waters.lat, graph.waters.lon
-    tail = (
-        np.repeat(np.arange(len(lat)), np.diff(graph.indptr)) if closed.passages else graph.target
-    )
+    lat, tail = graph.waters.lat, graph.tails
+    weight[(lat[tail] < closed.south) | (lat[graph.target] < closed.south)] = np.inf
     for passage in closed.passages:
         line = np.array(closing_line(closed.chart.coastline, passage)).T
         one, other = geocentric_unit_vectors(*line)
@@ -310,9 +315,7 @@ def _weight_without(graph: SeaGraph, closed: _Closed) -> FloatArray:
         half = float(np.arccos(np.clip(one @ middle, -1.0, 1.0)))
         beside = graph.waters.vectors @ middle >= np.cos(half + _LONGEST_EDGE / MEAN_RADIUS)
         near = np.flatnonzero(beside[tail] & (graph.canal < 0))
-        first, second = tail[near], graph.target[near]
-        blocked = closed.chart.legs_blocked(lat[first], lon[first], lat[second], lon[second])
-        weight[near[np.asarray(blocked)]] = np.inf
+        weight[near[np.asarray(closed.chart.legs_blocked(*graph.ends_of_edges(near)))]] = np.inf
     weight.flags.writeable = False
     return weight
 

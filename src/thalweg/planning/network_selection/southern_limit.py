@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from thalweg.chart.passage_crossings import crossing_place
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import densify
+from thalweg.core.geodesy import densify, line_length
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.chart_restrictions import ICEBERG_LATITUDE, SOUTH_LEFT_OUT
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -54,7 +55,14 @@ def southern_limit(
         return lowest, []
     if crossing_place(lat, lon, *_SOUTH_OF_AMERICA) is not None:
         return lowest, []
+    within = replace(waters, south=ICEBERG_LATITUDE)
+    try:
+        others = [within.graph_path(a, b) for a, b in pairwise(ends)]
+    except NoRouteError:
+        return lowest, []
+    longer = sum(map(line_length, others)) - sum(map(line_length, paths))
     return ICEBERG_LATITUDE, [
-        f"{SOUTH_LEFT_OUT}: the shortest way goes beyond, where icebergs are usual and the weather "
-        "is worst. Give a via point there to go that way."
+        f"{SOUTH_LEFT_OUT}: the shortest way goes beyond and is about "
+        f"{longer / NAUTICAL_MILE:.0f} nm shorter; icebergs are usual there and the weather is "
+        "worst. Give a via point there to go that way."
     ]

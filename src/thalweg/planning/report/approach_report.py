@@ -24,9 +24,11 @@ from thalweg.route.route_tables import LEG_KINDS
 TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
 PORT_TOO_SHALLOW: Final = "The port is too shallow"  #: a note on such a port begins so
 APPROACH_TOO_SMALL: Final = "The approach is too small"  #: a note on such an approach begins so
+LOW_BRIDGE: Final = "Low bridge"  #: a note on a bridge that leaves little room begins so
 _SHARP: Final = math.radians(120.0)
 _DEEP_SHIP: Final = 14.0  # draught that many ports do not take [m]
 _LONG_APPROACH: Final = 5.0  # [nm]
+_LEAST_ROOM: Final = 2.0  # under a bridge without a note [m]
 
 
 def port_depth_note(approach: PortApproach, draught: float) -> str:
@@ -93,12 +95,15 @@ def _bridge_notes(
             f"Bridges over the approach of {approach.label}: {', '.join(names)}. The air draught "
             "of the ship is not known and was not compared."
         ] * bool(names)
+    room = {one: one.clearance - air_draught for one in bridges}
     return [
-        f"{APPROACH_TOO_SMALL}: that of {approach.label} leads under {one.name}: the air draught "
-        f"of {air_draught:g} m is over its clearance of {one.clearance:g} m ({one.source}). Ask "
-        "the port: other berths may lie before the bridge, and the clearance grows at low water."
+        (f"{APPROACH_TOO_SMALL}: that" if room[one] < 0.0 else f"{LOW_BRIDGE}: the approach")
+        + f" of {approach.label} leads under {one.name}: the air draught of {air_draught:g} m "
+        + ("is over" if room[one] < 0.0 else f"leaves {room[one]:.1f} m of")
+        + f" its clearance of {one.clearance:g} m ({one.source}). Ask the port: other berths may "
+        "lie before the bridge, and the clearance grows at low water."
         for one in bridges
-        if one.clearance < air_draught
+        if room[one] < _LEAST_ROOM
     ]
 
 

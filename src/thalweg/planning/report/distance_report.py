@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -10,13 +12,18 @@ import numpy as np
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
+from thalweg.chart.passage_crossings import names_passed
+from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, densify, distance
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.seaways import Seaways
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways, path_length_and_canals
 
 #: Ways without a draught have a note where they do not keep off water shallower than this [m].
 LEAST_DEPTH: Final = 2.5
-_CLEARLY_LONGER: Final = 1.05
+SHOAL_DETOUR: Final = "Keeps off shoal water"  #: a note on a way that is longer so begins so
+_CLEARLY_LONGER: Final = 0.05  # share of the way that it is longer ...
+_MANY_MILES: Final = 50.0 * NAUTICAL_MILE  # ... or so much
 #: Ways so much longer than the straight line, up to so long [m], may miss a channel.
 _ROUNDABOUT: Final = 2.5
 _LONGEST_STRAIGHT: Final = 100.0 * NAUTICAL_MILE
@@ -42,26 +49,49 @@ def shoal_notes(seas: Seaways, path: Sequence[Position], draught: float | None) 
 
 
 def shoal_detour_notes(
-    length: float, without: float, finest: Callable[[], float]
+    seas: Seaways, ends: Sequence[Endpoint], length: float, *, offing: float
 ) -> tuple[str, ...]:
     """Return how much longer shoals make a way, as a note.
 
     Parameters
     ----------
-    length : Of the way [m].
-    without : Length of the way over shoals, on the graph of all seas [m].
-    finest : Gives the same, sailed to the offing [m]; asked only where it may matter.
+    seas : With the shoals; without shoals there is no note.
+    ends : Of the way, with via points between them.
+    length : Of the way without approaches [m].
+    offing : Distance from land that the shorter way keeps [m].
     """
-    if _CLEARLY_LONGER * without >= length:
+    if seas.shoals is None:
         return ()
-    direct = finest()
-    longer = (length - direct) / NAUTICAL_MILE
-    if _CLEARLY_LONGER * direct >= length or longer < 1.0:
+    over = replace(seas, shoals=None)
+    legs = list(pairwise(ends))
+
+    def saved(ways: Iterable[list[Position]]) -> float:
+        """Return what ways are shorter [m], 0 where it is no clear difference."""
+        longer = length - sum(path_length_and_canals(seas.chart, way)[0] for way in ways)
+        return longer if longer > clear_difference(length) else 0.0
+
+    try:
+        if not saved(over.graph_path(*leg) for leg in legs):
+            return ()
+        ways = [over.path(*leg, offing=offing) for leg in legs]
+    except NoRouteError:
         return ()
+    longer = saved(ways) / NAUTICAL_MILE
+    if longer < 1.0:
+        return ()
+    lat, lon = np.array([place for way in ways for place in way], float).T
+    names = names_passed(seas.chart.coastline, seas.chart.passages, lat, lon)
+    by = f", by {', '.join(dict.fromkeys(names))}" if names else ""
     return (
-        f"Keeps off shoal water by the {NAME}, which is coarse: the shortest way for this draught "
-        f"is {longer:.0f} nm shorter, over that water. See the chart.",
+        f"{SHOAL_DETOUR} by the {NAME}, which is coarse: the shortest way for this draught is "
+        f"{longer:.0f} nm shorter, over that water{by}. See the chart; to compare, plan with "
+        "--ignore-shoals.",
     )
+
+
+def clear_difference(length: float) -> float:
+    """Return how much shorter than a way [m] another one is that a note is on [m]."""
+    return min(_CLEARLY_LONGER * length, _MANY_MILES)
 
 
 def roundabout_notes(line: Sequence[Position], length: float) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from thalweg.planning.report.closed_way_report import (
     ways_of_names,
     ways_on_line,
 )
+from thalweg.planning.report.distance_report import clear_difference, shoal_detour_notes
 from thalweg.planning.request.chart_restrictions import canal_restriction, excluded_canal_note
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -42,6 +43,7 @@ _CLOSE: Final = 0.25 * NAUTICAL_MILE
 _STEP_OF_LINE: Final = 0.1 * NAUTICAL_MILE
 _BESIDE_LINE: Final = 0.5 * NAUTICAL_MILE  # positions so near the line of a passage are in it
 PASSES: Final = "Passes "  #: one on a named passage
+_SHORT_VOYAGE: Final = 200.0 * NAUTICAL_MILE  # has no note on shoals
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -192,6 +194,32 @@ def _closed_on_shorter_way(
     )
     saved = length - through
     return (saved, [title_of_way(way) for way in used]) if saved >= _LEAST_SAVED else (0.0, [])
+
+
+def shoal_detour_notes_of_plan(context: PlanningContext, route: Route) -> list[str]:
+    """Return how much longer shoals make the shortest way of a planned voyage, as a note.
+
+    Empty for short voyages, those with via points and those on charts without shoals.
+    """
+    chart, shoals = context.chart, context.chart.zones.shoals
+    if shoals is None or not chart.passages or chart.area.width < 360.0 or context.voyage.via:
+        return []
+    at_sea = np.flatnonzero(np.asarray(route.legs["leg_kind"]) != LEG_KINDS.index("approach"))
+    if not len(at_sea) or route.distance_nm * NAUTICAL_MILE < _SHORT_VOYAGE:
+        return []
+    lat, lon = np.asarray(route.track.lat), np.asarray(route.track.lon)
+    ends = [Endpoint("", float(lat[k]), float(lon[k]), 0.0) for k in (at_sea[0], at_sea[-1] + 1)]
+    seas = replace(Seaways.of_ship_chart(chart), shoals=shoals)
+    try:
+        ways = (replace(seas, shoals=None).graph_path(*ends), seas.graph_path(*ends))
+        over, round_shoals = (path_length_and_canals(seas.chart, way)[0] for way in ways)
+        if round_shoals - over < clear_difference(round_shoals):
+            return []
+        way = seas.path(*ends, offing=chart.offing.distance)
+    except (InputError, NoRouteError):  # an end that the chart of all seas has on land
+        return []
+    length = path_length_and_canals(seas.chart, way)[0]
+    return list(shoal_detour_notes(seas, ends, length, offing=chart.offing.distance))
 
 
 def saved_length(route: Route, way: NarrowWay) -> float:

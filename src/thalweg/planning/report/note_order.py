@@ -8,11 +8,13 @@ from typing import Final
 from thalweg.network.layered.sections_round_land import OTHER_WAYS
 from thalweg.planning.report.approach_report import (
     APPROACH_TOO_SMALL,
+    LOW_BRIDGE,
     PORT_TOO_SHALLOW,
     TURNS_BACK,
 )
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
+from thalweg.planning.report.distance_report import SHOAL_DETOUR
 from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND
 from thalweg.planning.report.ice_report import REACHES_ICE
@@ -43,7 +45,7 @@ SPEEDS_CHOSEN: Final = "The plan chooses among"
 #: First words of notes that no summary may leave out, the most dangerous first.
 _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NOT_REACHED,
-    (PORT_TOO_SHALLOW, APPROACH_TOO_SMALL),
+    (PORT_TOO_SHALLOW, APPROACH_TOO_SMALL, LOW_BRIDGE),
     LIMIT_EXCEEDED,
     SQUAT_UNCOUNTED,
     WAITS,
@@ -72,6 +74,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     WAVES_OUT_OF_RANGE,
     (OUT_OF_RANGE, BELOW_LOWEST),
     SPEEDS_CHOSEN,
+    SHOAL_DETOUR,
     LANE_DETOUR,
 )
 

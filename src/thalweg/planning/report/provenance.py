@@ -19,7 +19,7 @@ from thalweg.planning.report.approach_report import turn_back_notes_of_route
 from thalweg.planning.report.depth_report import depth_notes
 from thalweg.planning.report.given_route_report import file_speed_notes, given_route_notes
 from thalweg.planning.report.ice_report import ice_warnings
-from thalweg.planning.report.land_report import land_notes
+from thalweg.planning.report.land_report import land_notes, shoal_detour_notes_of_plan
 from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.report.squat_report import squat_notes
 from thalweg.planning.report.unread_weather import unread_weather_notes
@@ -78,6 +78,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += squat_notes(route, context.ship, context.min_ukc)
     if context.needs.limits.depth_checked:
         return notes
+    notes += shoal_detour_notes_of_plan(context, route)
     return notes + depth_notes(context.chart, route, context.ship, context.min_ukc)
 
 

@@ -312,16 +312,17 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
     InputError : For fewer than two different positions, or without any departure.
     """
     if len(set(parsed.positions)) < 2:
+        count = len(parsed.positions)
         raise InputError(
-            f"The route file {name!r} holds {len(parsed.positions)} waypoint"
-            f"{'' if len(parsed.positions) == 1 else 's'}.",
+            f"The route file {name!r} holds {count} waypoint{'s' * (count != 1)}.",
             "A route has at least two different ones.",
             "Give a file with the whole route.",
             file=name,
         )
     if depart is None and parsed.first_time is None:
+        unused = [f" In the file, {one}." for one in parsed.notes if " time" in one]
         raise InputError(
-            f"The route file {name!r} has no departure.",
+            f"The route file {name!r} has no departure that can be used.{''.join(unused)}",
             "The departure is the time of its first waypoint, or an argument.",
             "Give depart, such as 2026-01-01T06:00Z.",
             file=name,

@@ -67,10 +67,11 @@ def parse_rtz(data: bytes) -> ParsedTrack:
     notes: list[str] = []
     waypoints = [e for group in children(root, "waypoints") for e in children(group, "waypoint")]
     if local_name(root) != "route" or len(waypoints) < 2:
+        count = "one waypoint" if len(waypoints) == 1 else "no waypoint"
         raise InputError(
-            "The RTZ holds no route.",
+            f"The RTZ has {count}." if local_name(root) == "route" else "The RTZ holds no route.",
             "A route is an element route with two or more waypoints.",
-            "Export the route as RTZ.",
+            "Export the whole route as RTZ.",
         )
     positions = [_position(waypoint, i, notes) for i, waypoint in enumerate(waypoints, start=1)]
     notes = [*rtz_notes(root, waypoints), *notes]

@@ -73,7 +73,6 @@ def _assemble_resistance_model(
     loss = build_speed_loss(file, hull, loading)
     loss = _checked_speed_loss(file.models, loss)
     _check_squat_and_rudder(file, hull, loading)
-    _check_draught(loading)
     full = _full_hull(hull, loading)
     balance_at = _force_balance_by_loading(file, full, loading)
     plant = cubic_law_plant(file) if _is_cubic(file) else build_engine_plant(file)
@@ -158,17 +157,6 @@ def _force_balance_by_loading(
         return balance
 
     return balance_at
-
-
-def _check_draught(loading: Loading) -> None:
-    """Refuse a hull without draught."""
-    if loading.draught_empty <= 0.0:
-        raise InputError(
-            "The draught is 0 m.",
-            "A resistance needs a hull with a draught, full and empty.",
-            "Correct hull.draught_m, or loading.draught_empty_m.",
-            key="hull.draught_m" if loading.draught_full <= 0.0 else "loading.draught_empty_m",
-        )
 
 
 def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from thalweg.ship.schema.section import Section
 from thalweg.ship.schema.table_section import TableSection
 from thalweg.ship.schema.value_types import (
     AppendageCount,
+    BulbHeight,
     Coefficient,
     Consumption,
     Currency,
@@ -73,7 +74,7 @@ class HullSection(Section):
     lcb_percent: Annotated[Number, Field(ge=-10.0, le=10.0)] | None = None
     wetted_surface_m2: Annotated[Number, Field(gt=0.0, le=1e5)] | None = None
     bulb_area_m2: SmallArea | None = None
-    bulb_centre_height_m: Draught | None = None
+    bulb_centre_height_m: BulbHeight | None = None
     transom_area_m2: Annotated[Number, Field(ge=0.0, le=2000.0)] | None = None
     appendage_area_m2: Annotated[Number, Field(ge=0.0, le=5000.0)] | None = None
     appendage_factor: Annotated[Number, Field(ge=1.0, le=10.0)] | None = None

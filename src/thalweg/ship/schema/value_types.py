@@ -111,7 +111,8 @@ OneOrMore = BeforeValidator(as_list)
 SternShape = Annotated[str | float, BeforeValidator(as_stern_shape)]
 
 Length = Annotated[Number, Field(gt=0.0, le=500.0)]  #: [m]
-Draught = Annotated[Number, Field(ge=0.0, le=DEEPEST_DRAUGHT)]  #: [m]
+Draught = Annotated[Number, Field(gt=0.0, le=DEEPEST_DRAUGHT)]  #: [m]
+BulbHeight = Annotated[Number, Field(ge=0.0, le=DEEPEST_DRAUGHT)]  #: centre over the keel [m]
 SuperstructureHeight = Annotated[Number, Field(gt=0.0, le=100.0)]  #: [m]
 #: Name of a place or a task on board
 PlaceName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9 _-]{0,39}$")]

@@ -1,0 +1,41 @@
+"""The note of a plan on a shorter way over shoals."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
+from thalweg.planning.report.land_report import shoal_detour_notes_of_plan
+from thalweg.planning.seaways import world_chart
+
+INDIAN_OCEAN, YELLOW_SEA = (-38.0, 60.0), (36.0, 123.5)
+
+
+@pytest.mark.parametrize(
+    ("draught", "via", "miles"),
+    [
+        (14.1, (), 364),  # by Lombok: 6,236 nm against 5,871 by Sunda (`thalweg.distance`)
+        (8.0, (), None),
+        (14.1, ((-5.9, 105.9),), None),  # the user chose the way
+    ],
+)
+def test_the_shorter_way_over_shoals_is_stated(draught, via, miles):
+    chart = world_chart()
+    ends = [INDIAN_OCEAN, YELLOW_SEA]
+    shoals = shoals_of_draught(chart, draught, draught, ends)
+    chart = replace(chart, zones=replace(chart.zones, shoals=shoals))
+    context = SimpleNamespace(chart=chart, voyage=SimpleNamespace(via=via))
+    lat, lon = np.array(ends).T
+    route = SimpleNamespace(
+        legs={"leg_kind": np.zeros(1, int)},
+        track=SimpleNamespace(lat=lat, lon=lon),
+        distance_nm=6000.0,
+    )
+    notes = shoal_detour_notes_of_plan(context, route)
+    assert len(notes) == (miles is not None)
+    for note in notes:
+        assert note.startswith("Keeps off shoal water by the global depth layer")
+        assert "over that water, by Sunda" in note and "--ignore-shoals" in note
+        assert float(note.split(" nm shorter")[0].split()[-1]) == pytest.approx(miles, rel=0.03)
