@@ -10,6 +10,8 @@ from thalweg.core.geodesy import Position
 #: there: 72 N closes the Northwest and Northeast Passages and leaves the North Cape open; south of
 #: 60 S is the Antarctic area of the Polar Code (SOLAS chapter XIV).
 ICE_LATITUDES: Final = (-60.0, 72.0)
+#: Latitude [deg] that ways between the southern capes do not pass by default.
+ICEBERG_LATITUDE: Final = -50.0
 _ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
 _ICE_COAST: Final = 66.5  # latitude from which on ports are reached through ice [deg] ...
 _ICE_FREE: Final = (-60.0, 55.0)  # ... outside these longitudes [deg]

@@ -13,7 +13,8 @@ from thalweg.chart.passage_crossings import crossing_place
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import densify, line_length
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.request.chart_restrictions import ICEBERG_LATITUDE, SOUTH_LEFT_OUT
+from thalweg.network.global_grid.ice_limits import ICEBERG_LATITUDE
+from thalweg.planning.report.ice_report import SOUTH_LEFT_OUT
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
 

@@ -14,6 +14,7 @@ from thalweg.chart.depth.closed_shoals import CLOSED_SHOALS
 from thalweg.core.time import utc_text
 from thalweg.kernels.codes import NO_GO, OUTSIDE_PERIOD, REASONS, SHIP_RANGE
 from thalweg.planning.plan_front import least_words, not_rising, words_of_points
+from thalweg.planning.report.ice_report import SOUTH_LEFT_OUT
 from thalweg.planning.report.note_order import count_of_dangers, danger_first
 from thalweg.planning.report.route_summary import (
     arrival_text,
@@ -27,7 +28,7 @@ from thalweg.planning.report.route_summary import (
     weather_on_route,
     weather_text,
 )
-from thalweg.planning.request.chart_restrictions import IN_WATER, SOUTH_LEFT_OUT
+from thalweg.planning.request.chart_restrictions import IN_WATER
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 from thalweg.ship.ship_assumptions import NO_DEPTH

@@ -23,10 +23,7 @@ from thalweg.ship import Ship
 #: Water beyond these latitudes [deg] is excluded unless the voyage goes there: sea ice is not
 #: modelled, and the Northwest and Northeast Passages are north of the first.
 ICE_LIMIT_NORTH, ICE_LIMIT_SOUTH = 71.9, -60.0
-#: Latitude [deg] that voyages between the southern capes do not pass by default.
-ICEBERG_LATITUDE: Final = -50.0
 IN_WATER: Final = "in water "  #: the latitudes in the kind of a bound come after these words
-SOUTH_LEFT_OUT: Final = "Water south of 50 S is left out"  #: a note on a longer way begins so
 #: Canals are mentioned if the geodesics through them are at most so much longer, in all and [m].
 _DETOUR_RATIO, _DETOUR = 1.3, 500.0 * NAUTICAL_MILE
 _ICE_LIMIT_MARGIN = 3.0  # [deg] beyond the places of the voyage that remain open
