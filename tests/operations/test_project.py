@@ -43,7 +43,7 @@ from thalweg.operations.dredging.verified_legs import (
 from thalweg.operations.dredging.work_windows import WorkWindows
 from thalweg.operations.examples.estuary import bed_depth
 from thalweg.operations.plots import draw_routes
-from thalweg.operations.plots.project_plots import _draw_load_factors
+from thalweg.operations.plots.project_plots import _draw_load_factors, time_shares
 from thalweg.operations.result_files import write_project_files
 from thalweg.planning.report.squat_report import least_water_with_squat
 from thalweg.route import evaluate
@@ -341,6 +341,11 @@ def test_files_and_pictures(result, tmp_path):
     moved = sum(float(row["volume_m3"]) for row in rows if row["run"] == "optimised")
     assert moved == pytest.approx(14_000.0)
     assert min(float(row["full_least_clearance_m"]) for row in rows) >= 1.0
+    for run in result.runs:
+        shares = time_shares(run)
+        assert sum(shares.values()) == pytest.approx(1.0, abs=1e-6)
+        assert shares["waiting"] == run.totals["waiting_share"]
+        assert shares["sailing full"] <= run.totals["sailing_full_share"]
     figure = draw_routes(result, colour="load")
     assert len(figure.axes) == 4  # two maps, two colour bars
     for name in ("project.png", "routes.png"):

@@ -25,6 +25,7 @@ _ACTIVITIES = {
 }
 _UNKNOWN = "#d9d4c8"  # land, and where no depth is known
 _FIRST_DAYS = 4.0  # shown hour by hour
+_SMALLEST_LABELLED = 2.0  # share of the time that has its number beside it [%]
 _MAX_LINES = 600  # cycles drawn of each run
 
 
@@ -110,18 +111,31 @@ def _draw_load_factors(result: ProjectResult, axes: Any) -> None:
 
 
 def _draw_time_shares(result: ProjectResult, axes: Any) -> None:
-    keys = ("loading_share", "sailing_full_share", "unloading_share", "sailing_empty_share")
-    names = ("loading", "sailing full", "unloading", "sailing empty")
-    left = np.zeros(len(result.runs))
+    """Draw the share of each activity as one bar for each run, waits apart from sailing."""
     rows = np.arange(len(result.runs))
-    for key, name in zip(keys, names):
-        share = np.array([100.0 * float(run.totals[key] or 0.0) for run in result.runs])
-        axes.barh(rows, share, left=left, color=_ACTIVITIES[name], label=name)
+    left = np.zeros(len(rows))
+    shares = [time_shares(run) for run in result.runs]
+    for name, colour in _ACTIVITIES.items():
+        share = np.array([100.0 * one[name] for one in shares])
+        axes.barh(rows, share, left=left, color=colour, label=name)
         for row, (a, b) in enumerate(zip(left, share)):
-            axes.text(a + 0.5 * b, row, f"{b:.0f}", ha="center", va="center", fontsize=8)
+            if b >= _SMALLEST_LABELLED:
+                axes.text(a + 0.5 * b, row, f"{b:.0f}", ha="center", va="center", fontsize=8)
         left = left + share
     axes.set_yticks(rows, [run.name for run in result.runs])
     axes.set(xlabel="share of the time [%]", xlim=(0, 100))
+
+
+def time_shares(run: ProjectRun) -> dict[str, float]:
+    """Return the share of the time (0 to 1) of each activity; sailing is without its waits."""
+    totals = run.totals
+    duration = run.cycles[-1].end - run.cycles[0].start
+    waits = {
+        "sailing full": sum(cycle.out.waiting for cycle in run.cycles) / duration,
+        "sailing empty": sum(cycle.back.waiting for cycle in run.cycles) / duration,
+    }
+    shares = {name: float(totals[f"{name.replace(' ', '_')}_share"] or 0.0) for name in _ACTIVITIES}
+    return {name: share - waits.get(name, 0.0) for name, share in shares.items()}
 
 
 def draw_routes(

@@ -123,10 +123,10 @@ class MapExtent:
             [west, west + length * mile], [lat, lat], color="#22303c", lw=2.5, zorder=9,
             solid_capstyle="butt",
         )  # fmt: skip
-        text = f"{length} nm" + (f" at {abs(lat):.0f}°" if self.north - self.south > 3.0 else "")
+        where = f" at {degree_label(round(lat), 'NS')}" if self.north - self.south > 3.0 else ""
         axes.annotate(
-            text, (west, lat), xytext=(0, 4), textcoords="offset points", fontsize=7, zorder=9,
-            bbox=box,
+            f"{length} nm{where}", (west, lat), xytext=(0, 4), textcoords="offset points",
+            fontsize=7, zorder=9, bbox=box,
         )  # fmt: skip
 
 
