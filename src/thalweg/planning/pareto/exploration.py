@@ -26,13 +26,14 @@ from thalweg.planning.pareto.trade_off_context import (
     spread_settings,
 )
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.single.isochrones import isochrones
 from thalweg.planning.single.no_route_diagnosis import (
     late_arrival_error,
     no_route_error,
     unreached_goal_error,
 )
 from thalweg.planning.single.route_candidates import refine_track, track_from_result
-from thalweg.planning.single.stretch import isochrones, plan_stretch
+from thalweg.planning.single.stretch import plan_stretch
 from thalweg.planning.single.stretch_result import StretchResult
 from thalweg.planning.single.weather_gaps import (
     MAX_GAPS,

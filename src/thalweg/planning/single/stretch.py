@@ -18,16 +18,18 @@ from thalweg.core.units import HOUR
 from thalweg.kernels.codes import CURRENT, REASONS
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
-from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea, ship_in_frozen_sea
+from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext, expected_speed
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.currents_too_strong import leaving_after_current
 from thalweg.planning.single.exceeded_limits import (
     MAX_ROUNDS,
     exceeded_limits_on_route,
     without_exceeding_edges,
 )
 from thalweg.planning.single.fewer_waits import passing_time_notes, with_best_waits
+from thalweg.planning.single.isochrones import isochrones, ship_on_network
 from thalweg.planning.single.lane_keeping import by_lanes_of_traffic
 from thalweg.planning.single.late_paths import LatePaths
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
@@ -55,7 +57,6 @@ from thalweg.search import (
     DepartureWindow,
     LowerBound,
     SearchResult,
-    ShipOnNetwork,
     best_departure,
     earliest_arrival,
     lower_bound,
@@ -118,6 +119,11 @@ def plan_stretch(
             continue
         if stretch is None or tried.route.feasible:
             stretch = tried
+        if not stretch.route.feasible and (finer, step) == (1, 0):
+            search = partial(
+                _search_and_refine, stricter, networks[1], (start, goal), limits=limits, seas=seas
+            )
+            stretch = leaving_after_current(stricter, stretch, window, search)
         if stretch.route.feasible:
             break
         seen, gaps = gaps, (*gaps, *data_gaps_on_route(tried.route))
@@ -229,7 +235,7 @@ def _late_paths(
 ) -> LatePaths:
     """Return the paths of later departures than that of a route, and of the search it is from."""
     result, route = found
-    ship = _ship_on_network(context, network, frozen, limits)
+    ship = ship_on_network(context, network, frozen, limits)
     ends = network.meta.start, network.meta.goal
     query = ArrivalQuery(*ends, route.depart, wait=context.voyage.wait)
 
@@ -241,41 +247,6 @@ def _late_paths(
         return context.evaluate(track_from_result(network, late, context.setting))
 
     return LatePaths(ship, query, result.arrive, refine, sail)
-
-
-def isochrones(
-    context: PlanningContext,
-    network: Network,
-    frozen: FrozenSea,
-    depart: float,
-    until: float | None,
-    *,
-    wait: bool = True,
-) -> np.ndarray:
-    """Return the earliest arrival at every node [s since 1970], up to a time if one is given.
-
-    Parameters
-    ----------
-    context : Request, data and ship of the plan.
-    network : With start and goal.
-    frozen : The sea at the stations of the network.
-    depart : Departure [s since 1970-01-01T00:00Z].
-    until : Latest arrival that is computed [s since 1970-01-01T00:00Z].
-    wait : Whether the ship may wait where the voyage lets it.
-
-    Returns
-    -------
-    ndarray (N,) : Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
-    """
-    everywhere = earliest_arrival(
-        _ship_on_network(context, network, frozen, context.needs.limits),
-        start=network.meta.start,
-        goal=None,
-        depart=depart,
-        wait=wait and context.voyage.wait,
-        arrive_by=until,
-    )
-    return everywhere.node_arrival
 
 
 def _search(
@@ -351,7 +322,7 @@ def _run_search(
     limits: Limits,
     window: tuple[float, float],
 ) -> SearchResult:
-    ship = _ship_on_network(context, network, frozen, limits)
+    ship = ship_on_network(context, network, frozen, limits)
     options = {
         "start": network.meta.start,
         "goal": network.meta.goal,
@@ -362,12 +333,6 @@ def _run_search(
     if window[1] > window[0]:
         return best_departure(ship, window=DepartureWindow(*window), **options)  # type: ignore[arg-type]
     return earliest_arrival(ship, depart=window[0], **options)  # type: ignore[arg-type]
-
-
-def _ship_on_network(
-    context: PlanningContext, network: Network, frozen: FrozenSea, limits: Limits
-) -> ShipOnNetwork:
-    return ship_in_frozen_sea(context, network, frozen, setting=context.setting, limits=limits)
 
 
 def _bound(
@@ -389,7 +354,7 @@ def _bound(
                 added, factors, graded=bool(zones.lanes) or zones.shoals is not None
             )
     return lower_bound(
-        _ship_on_network(context, network, frozen, context.needs.limits),
+        ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=float(result.path_arrive[0]),

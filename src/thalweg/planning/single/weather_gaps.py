@@ -84,7 +84,7 @@ def near_edges(network: Network, place: Violation) -> np.ndarray:
 
 
 def check_times_known(route: Route, start: Endpoint, goal: Endpoint) -> None:
-    """Raise `NoRouteError` if a route ends in water without data: its time is unknown.
+    """Raise `NoRouteError` if a route ends on the way, in water without data or in a current.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def check_times_known(route: Route, start: Endpoint, goal: Endpoint) -> None:
         return
     gaps = [v for v in route.violations if is_data_gap(v)]
     if not gaps:
-        return
+        raise _stopped_error(route, start, goal)
     first = gaps[0]
     names = sorted({_variable(v) for v in gaps if v.time == first.time})
     place = format_position(first.lat, first.lon)
@@ -110,6 +110,20 @@ def check_times_known(route: Route, start: Endpoint, goal: Endpoint) -> None:
         reasons={codes.REASONS[codes.NO_DATA]: len(gaps)},
         nearest=(first.lat, first.lon),
         variables=names,
+    )
+
+
+def _stopped_error(route: Route, start: Endpoint, goal: Endpoint) -> NoRouteError:
+    """Return the error for a route on which the ship does not arrive in known water."""
+    first = next(iter(route.violations), None)
+    return NoRouteError(
+        f"No route from {start.name} to {goal.name} was found on which the ship arrives"
+        + (f": {first}." if first is not None else "."),
+        "The fastest path of the search is refused by the exact calculation, and so are those of "
+        "finer networks.",
+        "Depart at another time, or choose a higher speed.",
+        reasons={} if first is None else {first.reason: 1},
+        **({} if first is None else {"nearest": (first.lat, first.lon)}),
     )
 
 
