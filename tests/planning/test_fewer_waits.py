@@ -137,7 +137,7 @@ def sailed_with(context, wait_h):
     return route
 
 
-NO_PATHS = LatePaths(None, None, np.inf, None, None)
+NO_PATHS = LatePaths(None, None, np.inf, None, None, lambda time: None)
 
 
 def test_waits_are_joined_as_far_as_the_limits_allow():

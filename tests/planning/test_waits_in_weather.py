@@ -18,14 +18,14 @@ KNOWN, UNKNOWN = 6.0, np.nan
 
 @pytest.fixture
 def planned(tmp_path):
-    """Plan past high waves from 3.0E for 40 h, and from 1.5E after hour 20 for a while."""
+    """Plan past high waves from 3.0E for some hours, and from 1.5E after hour 20 for a while."""
 
-    def of(until, height, objective="time", proof=3.0, **ship):
+    def of(until, height, objective="time", proof=3.0, first=40, **ship):
         hours = np.arange(97.0)
         lat, lon = np.arange(-1.0, 1.001, 0.05), np.arange(0.0, 6.001, 0.05)
         time, _, east = np.meshgrid(hours, lat, lon, indexing="ij")
         waves = np.full(time.shape, 1.0)
-        waves[(east >= 2.999) & (east <= 3.601) & (time <= 40)] = KNOWN
+        waves[(east >= 2.999) & (east <= 3.601) & (time <= first)] = KNOWN
         waves[(east >= 1.499) & (east < 2.999) & (time >= 20) & (time <= until)] = height
         name = "sea_surface_wave_significant_height"
         steps = np.datetime64("2026-05-01", "ns") + hours.astype(int) * np.timedelta64(1, "h")
@@ -89,6 +89,16 @@ def test_a_ship_arrives_later_where_she_would_wait_at_sea_in_high_or_unknown_wav
     (note,) = (note for note in found.notes if "later than is possible" in note)
     assert note.startswith("Arrives 5 h ") and "would have to wait at sea 25.4 h" in note
     assert note.endswith(words)
+
+
+@pytest.mark.slow
+def test_a_later_departure_is_searched_beyond_the_period_of_the_first_search(planned):
+    """The earliest route arrives after 65 h; the first search knows 75 h, 2.5 times the sailing."""
+    found = planned(until=58, height=KNOWN, first=50)
+    assert found.best.feasible
+    assert np.flatnonzero(np.asarray(found.best.track.wait)).tolist() == [0]
+    assert 75.0 < found.best.time_h < 1.3 * 65.4
+    assert not any(note.startswith("Waits at sea") for note in found.notes)
 
 
 @pytest.mark.slow

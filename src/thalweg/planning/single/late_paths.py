@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,8 @@ class LatePaths:
     arrive : Earliest arrival on the network [s since 1970-01-01T00:00Z].
     refine : Refines the path of a search; returns its route as evaluated.
     sail : Returns the route of the path of a search as evaluated, without refinement.
+    ship_until : Returns the ship with the sea until a time at least [s since 1970]; the search may
+        have known a shorter period.
     """
 
     ship: ShipOnNetwork
@@ -33,6 +35,11 @@ class LatePaths:
     arrive: float
     refine: Callable[[SearchResult], Route]
     sail: Callable[[SearchResult], Route]
+    ship_until: Callable[[float], ShipOnNetwork]
+
+    def lasting(self, time: float) -> LatePaths:
+        """Return the paths in a sea that is known until a time [s since 1970] at least."""
+        return replace(self, ship=self.ship_until(time))
 
     def search(self, arrive_by: float, no_later: float = math.inf) -> SearchResult | None:
         """Return the path of the latest departure that arrives by a time, as `latest_departure`."""

@@ -57,6 +57,7 @@ from thalweg.search import (
     DepartureWindow,
     LowerBound,
     SearchResult,
+    ShipOnNetwork,
     best_departure,
     earliest_arrival,
     lower_bound,
@@ -203,7 +204,7 @@ def _search_and_refine(
             found = partial(_route_on_network, context, limits, window, ends)
             route = along_way_of_seas(context, ends, route, found, limits)
     route = by_lanes_of_traffic(context, network, route)
-    paths = _late_paths(context, network, frozen, limits, (result, route))
+    paths = _late_paths(context, network, limits, (result, route), seas)
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
     route, later = with_best_waits(context, route, paths, last_departure=window[1])
@@ -229,13 +230,13 @@ def _route_on_network(
 def _late_paths(
     context: PlanningContext,
     network: Network,
-    frozen: FrozenSea,
     limits: Limits,
     found: tuple[SearchResult, Route],
+    seas: LastFrozenSea,
 ) -> LatePaths:
     """Return the paths of later departures than that of a route, and of the search it is from."""
     result, route = found
-    ship = ship_on_network(context, network, frozen, limits)
+    start, end = seas.period
     ends = network.meta.start, network.meta.goal
     query = ArrivalQuery(*ends, route.depart, wait=context.voyage.wait)
 
@@ -246,7 +247,11 @@ def _late_paths(
     def sail(late: SearchResult) -> Route:
         return context.evaluate(track_from_result(network, late, context.setting))
 
-    return LatePaths(ship, query, result.arrive, refine, sail)
+    def ship_until(time: float) -> ShipOnNetwork:
+        sea = seas.freeze(context, network, start, max(end, min(time, context.data_end)))
+        return ship_on_network(context, network, sea, limits)
+
+    return LatePaths(ship_until(end), query, result.arrive, refine, sail, ship_until)
 
 
 def _search(

@@ -44,6 +44,7 @@ def without_waits_above_limits(
         return route, []
     latest = route.arrive + max(MOST_LATER * route.time_h * HOUR, _LEAST_LATER)
     latest = min(latest, context.latest_arrival)
+    paths = paths.lasting(latest + max(0.0, paths.arrive - route.arrive))
     for found in _late_paths(route, paths, latest):
         if waiting_weather_texts(paths.sail(found), context.ship):
             continue
