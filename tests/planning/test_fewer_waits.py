@@ -205,13 +205,15 @@ def context():
 
 def paths_with(early, *routes):
     """Return late paths that are found as these routes, without waits."""
-    return SimpleNamespace(
+    paths = SimpleNamespace(
         arrive=early.arrive,
+        lasting=lambda time: paths,
         search_without_waits=lambda by: [one for one in routes if one.arrive <= by],
         search=lambda by: None,
         sail=lambda one: one,
         refine=lambda one: one,
     )
+    return paths
 
 
 def test_a_ship_arrives_later_where_she_would_wait_in_wind_above_her_limit(context):

@@ -60,8 +60,8 @@ def test_a_ship_waits_at_her_berth_where_waves_are_too_high_at_sea(planned):
 
 @pytest.mark.slow
 def test_a_wait_that_has_no_other_place_is_the_first_note(planned):
-    """From her berth she would arrive after 84 h, half as late again."""
-    found = planned(until=60, height=KNOWN)
+    """From her berth she would arrive after 102 h, and the data end after 96 h."""
+    found = planned(until=78, height=KNOWN)
     assert found.best.waiting_h > 20.0
     (note,) = (note for note in found.notes if note.startswith("Waits at sea"))
     assert "in waves of up to 6.0 m, above the limit of 4.0 m" in note
