@@ -69,6 +69,7 @@ def test_a_member_that_closes_every_route_leaves_the_choice_to_the_others(object
             "Members   mean of 2 of 3 that keep the limits, with 10 and 90 %: time 5.15 h" in text
         )
         assert "fuel 644 kg (558 to 730); the other lines are those of member 0" in text
+    assert "; in member 2 waves of up to 3.0 m" in text
     assert "Limits    NOT KEPT in member 2 (1 of 3): wave height above the limit" in text
     times = [route.time_h for route in found.routes]
     assert times == sorted(times) and len(times) >= (2 if objective == "front" else 1)

@@ -12,6 +12,7 @@ from thalweg.chart.offing import OffingDisc
 from thalweg.chart.passages import Passage
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify, distance
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.global_grid.grid import GridResolution, globe_grid
 from thalweg.planning.report.land_report import saved_length
 from thalweg.planning.request.offing_choice import (
@@ -20,6 +21,7 @@ from thalweg.planning.request.offing_choice import (
     restrict_passages,
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import world_chart
 
 pytestmark = pytest.mark.usefixtures("coarse_networks")
 
@@ -252,3 +254,19 @@ def test_an_end_a_little_nearer_to_land_than_the_offing_can_be_reached(share):
     offing = float(chart.coastline.shore_distance(*place)) / share
     off_land = chart_off_land(chart, [Endpoint("Balboa, PA", *place, 0.0)], offing)
     assert off_land.is_navigable(*place)
+
+
+@pytest.mark.parametrize(
+    ("place", "least"),
+    [
+        ((-33.8517, 151.2250), 0.1),  # Sydney: the harbour is 0.3 nm wide
+        ((50.15, -5.0333), 0.25),  # Carrick Roads
+        ((-34.0467, 18.3533), 0.5),  # Hout Bay
+    ],
+)
+def test_as_much_distance_from_land_as_possible_is_kept_on_the_way_out_of_a_harbour(place, least):
+    """Routes touched headlands up to 7 nm from such a place."""
+    chart = chart_off_land(world_chart(), [Endpoint("", *place, 0.0)], 2.0 * NAUTICAL_MILE)
+    at_end, round_it = (d for d in chart.offing.discs if (d.lat, d.lon) == place)
+    assert (round_it.least, round_it.radius) == (least * NAUTICAL_MILE, 10.0 * NAUTICAL_MILE)
+    assert at_end.radius == 0.0

@@ -135,3 +135,21 @@ def test_invalid_arguments_are_refused() -> None:
         found.spread("time")
     with pytest.raises(InputError, match="measure"):
         found.risk("time_h", "worst")
+
+
+def test_the_highest_waves_of_each_member_are_stated() -> None:
+    """Also in the members where they are over the limit of the ship."""
+    heights = [1.5, 8.0, 3.0]
+    members = [
+        Sea.from_functions(
+            {"sea_surface_wave_significant_height": lambda t, y, x, h=h: h * x + 0.0 * t}
+        )
+        for h in heights
+    ]
+    ship = Ship.simple(speed_kn=10.0, max_wave_height_m=5.0)
+    found = evaluate_members(TRACK, ship=ship, sea=Sea.ensemble(*members), depart=0.0)
+    assert found.infeasible == (1,)
+    assert found.highest_waves_m == pytest.approx(heights, rel=1e-6)
+    assert found.as_dict()["highest_waves_m"] == list(found.highest_waves_m)
+    calm = Sea.ensemble(current(0.0), current(0.5))
+    assert evaluate_members(TRACK, ship=SHIP, sea=calm, depart=0.0).highest_waves_m == (None, None)

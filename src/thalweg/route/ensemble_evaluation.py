@@ -19,6 +19,7 @@ from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.evaluation import RouteLike, evaluate
 from thalweg.route.route import Route
+from thalweg.ship.condition_variables import WAVE_HEIGHT
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -251,6 +252,19 @@ class EnsembleResult:
             "quantiles and tail are of the others.",
         )
 
+    @property
+    def highest_waves_m(self) -> tuple[float | None, ...]:
+        """Highest waves on the way in each member [m], of infeasible ones as far as they come.
+
+        None where the ship model reads no waves or none are known.
+        """
+        found = (route.samples.get(WAVE_HEIGHT) for route in self.routes)
+        highest = [
+            math.nan if waves is None else float(np.fmax.reduce(waves, initial=np.nan))
+            for waves in found
+        ]
+        return tuple(value if math.isfinite(value) else None for value in highest)
+
     def _first_reason(self) -> str:
         broken = self.routes[self.infeasible[0]].violations
         return str(broken[0]) if broken else "it never arrives"
@@ -262,7 +276,7 @@ class EnsembleResult:
         -------
         dict
             Number of members, infeasible ones with the first reason, statistics of each
-            quantity (None if unknown) and notes.
+            quantity (None if unknown), the highest waves in each member and notes.
         """
         spreads = {name: self.spread(name) for name in QUANTITIES}
         return {
@@ -271,6 +285,7 @@ class EnsembleResult:
             "first_reason": self._first_reason() if self.infeasible else None,
             "alpha": self.alpha,
             **{name: None if s is None else s.as_dict() for name, s in spreads.items()},
+            "highest_waves_m": list(self.highest_waves_m),
             "notes": list(self.notes),
         }
 

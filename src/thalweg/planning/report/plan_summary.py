@@ -42,6 +42,7 @@ MAX_LINES = 12  #: of a summary with its notes
 #: Notes whose contents the summary states in its own lines.
 _STATED = (NO_DEPTH,)
 _HELD = {"speed": "speed through water", "power": "power", "ground": "speed over ground"}
+_TENTH: Final = 0.1  # by which waves in another member are higher to be named [m]
 _WEAK: Final = 0.5  # gap from which a bound says little of a route
 _CLEARLY_LESS: Final = 0.01  # of a gap, for which another one is stated beside it
 #: Of key figures in sentences on how much less of them is possible.
@@ -105,7 +106,9 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     items += [
         (
             "Weather",
-            weather_text(best, _sea(plan)) + sickness_text(best, known.ship if known else None),
+            weather_text(best, _sea(plan))
+            + _waves_of_members(plan)
+            + sickness_text(best, known.ship if known else None),
         ),
         ("Depth", least_clearance_text(best)),
     ]
@@ -182,6 +185,16 @@ def members_text(row: Mapping[str, Any], currency: str) -> str:
             low, mean, high = column.texts
             parts.append(f"{name.split('_')[0]} {mean} {column.unit} ({low} to {high})")
     return f"mean of {of}, with 10 and 90 %: {', '.join(parts)}; {here}"
+
+
+def _waves_of_members(plan: PlanData) -> str:
+    """Return the highest waves of the worst member, where it is not the one that is shown."""
+    row = _row_of_best(plan) if plan.ensemble else {}
+    waves = {k: height for k, height in enumerate(row.get("highest_waves_m", ())) if height}
+    worst = max(waves, key=lambda k: waves[k], default=None)
+    if worst is None or waves[worst] < waves.get(row["shown_member"], 0.0) + _TENTH:
+        return ""
+    return f"; in member {worst} waves of up to {waves[worst]:.1f} m"
 
 
 def _row_of_best(plan: PlanData) -> Mapping[str, Any]:

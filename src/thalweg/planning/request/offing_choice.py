@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -22,7 +21,9 @@ from thalweg.ship import Ship
 #: Offings [nm] by size: the length and the draught [m] below which they hold.
 _DEFAULT_OFFINGS: Final = ((0.5, 50.0, 4.0), (1.0, 120.0, 7.0))
 _LARGE_SHIP_OFFING: Final = 2.0  # [nm]
-_DISC_RADII: Final = (0.0, 10.0 * NAUTICAL_MILE, 40.0 * NAUTICAL_MILE)
+_DISC_RADII: Final = (10.0 * NAUTICAL_MILE, 40.0 * NAUTICAL_MILE)
+#: Distances from land that are tried inside a disc with a radius, the widest first [m].
+_LEAST_OF_DISCS: Final = tuple(share * NAUTICAL_MILE for share in (0.5, 0.25, 0.1, 0.05))
 _LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE
 _ENOUGH_POSITIONS: Final = 30  # positions of a grid as far from land as the offing: open water
 _RIVER_OFFING: Final = 300.0  # off the banks before a canal [m]
@@ -115,43 +116,55 @@ def chart_off_land(
     if offing <= 0.0:
         return chart
     canals = [Endpoint(canal.title, *end, 0.0) for canal in chart.canals for end in canal.ends]
-    discs = [_disc_of_end(chart, end, offing) for end in ends]
-    discs += [_disc_of_end(chart, end, offing, in_river=True) for end in canals]
+    discs = [disc for end in ends for disc in _discs_of_end(chart, end, offing)]
+    discs += [disc for end in canals for disc in _discs_of_end(chart, end, offing, in_river=True)]
     if near_ends > 0.0:
         discs += [
             OffingDisc(end.lat, end.lon, near_least, near_ends) for end in (ends[0], ends[-1])
         ]
-    return chart.with_offing(offing, discs=[disc for disc in discs if disc is not None])
+    return chart.with_offing(offing, discs=discs)
 
 
-def _disc_of_end(
+def _discs_of_end(
     chart: Chart, end: Endpoint, offing: float, *, in_river: bool = False
-) -> OffingDisc | None:
-    """Return the smallest disc that joins an end to water as far from land as the offing.
+) -> list[OffingDisc]:
+    """Return the smallest discs that join an end to water as far from land as the offing.
 
-    For some miles before the end of a canal in a river a small distance from land is enough.
+    Inside the larger one as much distance from land is required as leaves them joined. For some
+    miles before the end of a canal in a river a small distance is enough.
     """
     place = end.lat, end.lon
     shore = float(chart.coastline.shore_distance(*place, cap=offing))
     if shore >= offing:
-        return None
-    least = min(0.9 * shore, _RIVER_OFFING) if in_river else 0.0
-    for radius in _DISC_RADII[in_river:]:
-        disc = disc_at(chart.coastline, place, radius=radius)
-        disc = replace(disc, least=max(disc.least, least))
-        if shore >= _NEAR_ENOUGH * offing and not in_river:
-            return disc
-        local = chart.with_offing(offing, discs=[disc])
-        lat, lon = joined_positions(
-            *place,
-            radius + _LOOK_BEYOND,
-            is_navigable=local.is_navigable,
-            legs_blocked=local.legs_blocked,
-        )
-        off = chart.coastline.shore_distance(lat, lon, cap=offing) >= 0.999 * offing
-        if int(np.sum(off)) >= _ENOUGH_POSITIONS:
-            return disc
-    return disc
+        return []
+    at_end = disc_at(chart.coastline, place)
+    if not in_river and (shore >= _NEAR_ENOUGH * offing or _joins(chart, [at_end], offing)):
+        return [at_end]
+    if in_river:
+        least = min(0.9 * shore, _RIVER_OFFING)
+        river = [OffingDisc(*place, least, radius) for radius in _DISC_RADII]
+        return [next((disc for disc in river if _joins(chart, [disc], offing)), river[-1])]
+    for radius in _DISC_RADII:
+        if _joins(chart, [OffingDisc(*place, 0.0, radius)], offing):
+            break
+    kept = ([at_end, OffingDisc(*place, least, radius)] for least in _LEAST_OF_DISCS)
+    possible = (discs for discs in kept if _joins(chart, discs, offing))
+    return next(possible, [OffingDisc(*place, 0.0, radius)])
+
+
+def _joins(chart: Chart, discs: Sequence[OffingDisc], offing: float) -> bool:
+    """Return whether discs round a place join it to water as far from land as the offing [m]."""
+    largest = discs[-1]
+    local = chart.with_offing(offing, discs=discs)
+    lat, lon = joined_positions(
+        largest.lat,
+        largest.lon,
+        largest.radius + _LOOK_BEYOND,
+        is_navigable=local.is_navigable,
+        legs_blocked=local.legs_blocked,
+    )
+    off = chart.coastline.shore_distance(lat, lon, cap=offing) >= 0.999 * offing
+    return int(np.sum(off)) >= _ENOUGH_POSITIONS
 
 
 def offing_note(chart: Chart, ends: Sequence[Endpoint], wanted: float) -> str:
