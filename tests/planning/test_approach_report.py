@@ -102,3 +102,16 @@ def test_bridges_over_an_approach_are_compared_with_the_air_draught():
     new_york = next(one for one in PORT_APPROACHES.all if one.label == "New York City, US")
     (note,) = approach_limit_notes(chart, new_york, {"draught": 9.0})
     assert note.startswith("Bridges over the approach of New York City, US: Verrazano Narrows (65")
+
+
+def test_an_approach_straight_over_land_is_a_danger():
+    """The coastline has no river to Launceston; lines by hand follow those that it does not have."""
+    chart = world_chart()
+    launceston, antwerp = (
+        next(one for one in PORT_APPROACHES.all if one.label == label)
+        for label in ("Launceston, AU", "Antwerp, BE")
+    )
+    (note,) = approach_limit_notes(chart, launceston, {"draught": 3.0})
+    assert note.startswith("The approach crosses land: that of Launceston, AU has a straight leg")
+    assert "17 nm are land" in note and count_of_dangers([note]) == 1
+    assert approach_limit_notes(chart, antwerp, {"draught": 3.0}) == []

@@ -318,7 +318,7 @@ def _with_limits(port: float, starboard: float) -> str:
     ("port", "starboard", "words"),
     [
         (2.0, 0.5, "meet land or closed zones: leg 1 to port (2.00 nm)."),
-        (0.5, 2.0, "keep clear of charted land and closed zones."),
+        (0.5, 2.0, "keep clear of charted land and closed zones"),
     ],
 )
 def test_the_cross_track_limits_of_a_file_are_checked(tmp_path, port, starboard, words):

@@ -36,7 +36,7 @@ CLOSED_SHOALS: Final = "closed shoals"  #: how plans and kinds of bounds name th
 _MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
 _SHARE: Final = 0.2
 _CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
-_CHANNEL_IN_REEFS: Final = 1.5 * NAUTICAL_MILE  # ... where named areas of reefs are beside it
+_CHANNEL_IN_AREAS: Final = 1.5 * NAUTICAL_MILE  # ... where named areas are beside it
 _LEAST_AREA: Final = 1e-4  # smaller shoals of the layer are left out [square degrees]
 _TOLERANCE: Final = 0.005  # of the outlines [deg]
 _DEGREE: Final = 60.0 * NAUTICAL_MILE
@@ -65,7 +65,7 @@ class ClosedShoals:
     ----------
     depth : Water with less than this by the layer, or in named areas, is closed [m].
     channels : tuple of tuple of (lat, lon)
-        Lines within 4 nautical miles of which water is open, in named reefs 1.5 [deg].
+        Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
     discs : tuple of (lat, lon, radius)
         Discs in which water is open [deg, m]; named areas with a centre inside are open.
     box : South, north, west and east [deg] of the shoals of the layer that count.
@@ -128,13 +128,12 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
         for area in SHOAL_AREAS
         if area.depth < closed.depth and not area.contains(*ends.T).any()
     ]
-    banks = [area.polygon for area in named if area.depth > 0.0]
-    reefs = [area.polygon for area in named if area.depth <= 0.0]
+    areas = [area.polygon for area in named]
     discs = [_disc(*disc) for disc in closed.discs]
     shapes = []
     for closed_here, reach in (
-        ([*_outlines_of_layer(closed.depth, closed.box), *banks], _CHANNEL),
-        (reefs, _CHANNEL_IN_REEFS),
+        (_outlines_of_layer(closed.depth, closed.box), _CHANNEL),
+        (areas, _CHANNEL_IN_AREAS),
     ):
         channels = [_corridor(line, reach) for line in closed.channels]
         shapes += [_without(np.array(closed_here, object), [*discs, *channels])]

@@ -14,7 +14,7 @@ from thalweg.chart.approaches import PortApproach
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage
 from thalweg.chart.port_limits.bridges import bridges_over
-from thalweg.core.geodesy import format_position
+from thalweg.core.geodesy import densify, distance, format_position, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route import Route
@@ -24,10 +24,15 @@ from thalweg.route.route_tables import LEG_KINDS
 TURNS_BACK: Final = "Turns back"  #: a note on such a way begins so
 PORT_TOO_SHALLOW: Final = "The port is too shallow"  #: a note on such a port begins so
 APPROACH_TOO_SMALL: Final = "The approach is too small"  #: a note on such an approach begins so
+OVER_LAND: Final = "The approach crosses land"  #: a note on a line without its river begins so
 LOW_BRIDGE: Final = "Low bridge"  #: a note on a bridge that leaves little room begins so
 _SHARP: Final = math.radians(120.0)
 _DEEP_SHIP: Final = 14.0  # draught that many ports do not take [m]
 _LONG_APPROACH: Final = 5.0  # [nm]
+LAND_OF_LINES_BY_HAND: Final = 6.0  #: of one leg, from which on a note says so [nm]
+_LAND_STEP: Final = 0.2 * NAUTICAL_MILE
+#: Miles of charted land on one leg, of computed lines and of those by hand, which follow rivers.
+_OVER_LAND: Final = {False: 2.0, True: LAND_OF_LINES_BY_HAND}
 _LEAST_ROOM: Final = 2.0  # under a bridge without a note [m]
 
 
@@ -74,7 +79,40 @@ def approach_limit_notes(
     ]
     low = [one for one in every if math.isfinite(one.max_air_draught)]
     low = [one for _at, one in passages_crossed(chart.coastline, low, lat, lon)]
-    return passages + _bridge_notes(approach, sizes.get("air_draught"), low)
+    bridges = _bridge_notes(approach, sizes.get("air_draught"), low)
+    return _over_land_notes(chart, approach) + passages + bridges
+
+
+def _over_land_notes(chart: Chart, approach: PortApproach) -> list[str]:
+    lat, lon = np.array(approach.line, float).T
+    miles = most_miles_over_land(chart, lat, lon)
+    by_hand = approach.quality != "computed"
+    return [over_land_note(approach.label, miles)] if miles >= _OVER_LAND[by_hand] else []
+
+
+def most_miles_over_land(chart: Chart, lat: FloatArray, lon: FloatArray) -> float:
+    """Return for how many miles a leg of a line is charted land, of the leg with most of them.
+
+    Parameters
+    ----------
+    lat, lon : float64 array (n,) of the line [deg].
+    """
+    if chart.coastline.is_empty or len(lat) < 2:
+        return 0.0
+    lat, lon, leg = densify(lat, lon, _LAND_STEP)
+    middle = 0.5 * (lat[1:] + lat[:-1]), lon[:-1] + 0.5 * longitude_difference(lon[1:], lon[:-1])
+    on_land = np.asarray(chart.coastline.shore_distance(*middle, cap=1.0)) <= 0.0
+    metres = np.asarray(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])) * on_land
+    return float(np.bincount(leg, metres).max()) / NAUTICAL_MILE
+
+
+def over_land_note(label: str, miles: float) -> str:
+    """Return a note on an approach of which a leg is charted land for some miles."""
+    return (
+        f"{OVER_LAND}: that of {label} has a straight leg of which {miles:.0f} nm are land by the "
+        "coastline, which does not have the water there. Do not sail this line: take the channel "
+        "from the chart of the port; it is longer."
+    )
 
 
 def _bridge_notes(

@@ -9,7 +9,13 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
 from thalweg.core.given_numbers import to_number
+from thalweg.core.types import BoolArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.planning.report.approach_report import (
+    LAND_OF_LINES_BY_HAND,
+    most_miles_over_land,
+    over_land_note,
+)
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
 from thalweg.planning.report.land_report import time_of_passing
 from thalweg.planning.report.lane_report import lane_notes
@@ -52,6 +58,10 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     if not chart.passages or len(lat) < 2:
         return []
     notes = _near_land(route, chart, ship)
+    in_approach = _in_approach(route, chart)
+    legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach)]
+    miles = max((most_miles_over_land(chart, lat[k], lon[k]) for k in legs), default=0.0)
+    notes += [over_land_note("a port", miles)] if miles >= LAND_OF_LINES_BY_HAND else []
     for passage in passages_used(chart, route):
         why = size_restriction(passage, ship)
         notes += [f"{PASSAGE_CLOSED}: the route leads through {why}."] if why else []
@@ -116,10 +126,7 @@ def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
     off_land = chart_off_land(
         chart, near or ends[:1], offing, near_ends=_ROUND_PORTS if near else 0.0
     )
-    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
-    in_approach = kind == LEG_KINDS.index("approach")
-    if chart.approaches is not None:  # on the way, too: plans follow their lines past other ports
-        in_approach = in_approach | chart.approaches.legs(track.lat, track.lon)
+    in_approach = _in_approach(route, chart)
     breaches = [
         at
         for at, _ in offing_breaches(off_land, track)
@@ -136,3 +143,12 @@ def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:
         f"{time_of_passing(route, worst.leg, worst.lat, worst.lon)}; plans keep "
         f"{offing / NAUTICAL_MILE:g} nm for a ship of this size, outside ports and passages.{more}"
     ]
+
+
+def _in_approach(route: Route, chart: Chart) -> BoolArray:
+    """Return which legs are in approaches, also on the way: plans follow them past other ports."""
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
+    found = kind == LEG_KINDS.index("approach")
+    if chart.approaches is None:
+        return np.asarray(found)
+    return np.asarray(found | chart.approaches.legs(route.track.lat, route.track.lon))

@@ -9,6 +9,7 @@ from thalweg.network.layered.sections_round_land import OTHER_WAYS
 from thalweg.planning.report.approach_report import (
     APPROACH_TOO_SMALL,
     LOW_BRIDGE,
+    OVER_LAND,
     PORT_TOO_SHALLOW,
     TURNS_BACK,
 )
@@ -45,7 +46,7 @@ SPEEDS_CHOSEN: Final = "The plan chooses among"
 #: First words of notes that no summary may leave out, the most dangerous first.
 _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     NOT_REACHED,
-    (PORT_TOO_SHALLOW, APPROACH_TOO_SMALL, LOW_BRIDGE),
+    (OVER_LAND, PORT_TOO_SHALLOW, APPROACH_TOO_SMALL, LOW_BRIDGE),
     LIMIT_EXCEEDED,
     SQUAT_UNCOUNTED,
     WAITS,

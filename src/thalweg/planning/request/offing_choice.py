@@ -21,7 +21,7 @@ from thalweg.ship import Ship
 #: Offings [nm] by size: the length and the draught [m] below which they hold.
 _DEFAULT_OFFINGS: Final = ((0.5, 50.0, 4.0), (1.0, 120.0, 7.0))
 _LARGE_SHIP_OFFING: Final = 2.0  # [nm]
-_DISC_RADII: Final = (10.0 * NAUTICAL_MILE, 40.0 * NAUTICAL_MILE)
+_DISC_RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (3.0, 5.0, 10.0, 40.0))
 #: Distances from land that are tried inside a disc with a radius, the widest first [m].
 _LEAST_OF_DISCS: Final = tuple(share * NAUTICAL_MILE for share in (0.5, 0.25, 0.1, 0.05))
 _LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE

@@ -56,7 +56,11 @@ def corridor_notes(parsed: ParsedTrack, chart: Chart) -> list[str]:
     if not tested:
         return []
     if not met:
-        return ["The cross-track limits of the file keep clear of charted land and closed zones."]
+        outside = ", outside canals and approaches of ports" if inside.any() else ""
+        return [
+            "The cross-track limits of the file keep clear of charted land and closed zones"
+            f"{outside}."
+        ]
     more = f" and {len(met) - _SHOWN} more" if len(met) > _SHOWN else ""
     shown = ", ".join(met[:_SHOWN])
     return [f"The cross-track limits of the file meet land or closed zones: {shown}{more}."]
