@@ -105,7 +105,7 @@ def test_bridges_over_an_approach_are_compared_with_the_air_draught():
 
 
 def test_an_approach_straight_over_land_is_a_danger():
-    """The coastline has no river to Launceston; lines by hand follow those that it does not have."""
+    """The coastline has no river to Launceston; lines by hand follow rivers that it lacks."""
     chart = world_chart()
     launceston, antwerp = (
         next(one for one in PORT_APPROACHES.all if one.label == label)

@@ -220,7 +220,7 @@ def test_every_deliberate_error_of_the_samples_is_named():
     [
         ("<route", "cannot be read"),
         ('<!DOCTYPE a [<!ENTITY x "y">]><route>&x;</route>', "cannot be read"),
-        (f"{HEAD}</route>", "no route"),
+        (f"{HEAD}</route>", "no waypoint"),
         (f"{HEAD}<waypoints>{POINTS[:80]}</waypoints></route>".replace("</w", "</w", 1), "."),
         (f"{HEAD}<waypoints>{POINTS.replace('50.1', 'x')}</waypoints></route>", "not a number"),
         (f"{HEAD}<waypoints>{POINTS.replace('50.1', '95')}</waypoints></route>", "beyond 90"),
@@ -318,7 +318,7 @@ def _with_limits(port: float, starboard: float) -> str:
     ("port", "starboard", "words"),
     [
         (2.0, 0.5, "meet land or closed zones: leg 1 to port (2.00 nm)."),
-        (0.5, 2.0, "keep clear of charted land and closed zones"),
+        (0.5, 2.0, "keep clear of charted land and closed zones."),
     ],
 )
 def test_the_cross_track_limits_of_a_file_are_checked(tmp_path, port, starboard, words):

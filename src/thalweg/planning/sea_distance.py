@@ -210,9 +210,9 @@ def sea_distance(
     The way is the shortest over a graph of all seas, where water within 2 nautical miles of land
     counts up to half more, after string pulling. Passages for small or local ships are closed.
     Water north of 72 N and south of 60 S is used only by ways that begin or end there, and in the
-    open ocean water south of 50 S only by ways that have an end or a via point near it; a note
-    states how much longer that makes the way. Traffic rules and weather are not considered. The
-    graph is made once (10 to 20 s) and kept in the cache.
+    open ocean water south of 50 S (round Cape Horn 57.5 S) only by ways that have an end or a via
+    point near it; a note states how much longer that makes the way. Traffic rules and weather are
+    not considered. The graph is made once (10 to 20 s) and kept in the cache.
     """
     chart = world_chart() if chart is None else chart
     check_offing(offing_nm)

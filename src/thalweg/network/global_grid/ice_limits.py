@@ -12,6 +12,8 @@ from thalweg.core.geodesy import Position
 ICE_LATITUDES: Final = (-60.0, 72.0)
 #: Latitude [deg] that ways between the southern capes do not pass by default.
 ICEBERG_LATITUDE: Final = -50.0
+#: ... nor ways round Cape Horn, which pass south of the islands of Diego Ramirez in 56.5 S.
+HORN_LATITUDE: Final = -57.5
 _ICE_MARGIN: Final = 1.0  # ends this near to a limit count as beyond it [deg]
 _ICE_COAST: Final = 66.5  # latitude from which on ports are reached through ice [deg] ...
 _ICE_FREE: Final = (-60.0, 55.0)  # ... outside these longitudes [deg]

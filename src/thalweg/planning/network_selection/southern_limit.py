@@ -13,7 +13,7 @@ from thalweg.chart.passage_crossings import crossing_place
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import densify, line_length
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.global_grid.ice_limits import ICEBERG_LATITUDE
+from thalweg.network.global_grid.ice_limits import HORN_LATITUDE, ICEBERG_LATITUDE
 from thalweg.planning.report.ice_report import SOUTH_LEFT_OUT
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
@@ -32,7 +32,8 @@ def southern_limit(
 
     It is `ICEBERG_LATITUDE` where the shortest way passes that latitude in the open ocean: great
     circles between the southern capes lead through icebergs, in the worst of the weather. A voyage
-    round Cape Horn or by a canal of America, whose other way that is, keeps the usual limit.
+    round Cape Horn keeps north of `HORN_LATITUDE`, and one by a canal of America, whose other way
+    that is, the usual limit.
 
     Parameters
     ----------
@@ -52,18 +53,18 @@ def southern_limit(
     canals = [name for path in paths for name in path_length_and_canals(waters.chart, path)[1]]
     corners = np.array([place for path in paths for place in path], float)
     lat, lon, _ = densify(corners[:, 0], corners[:, 1], _PIECE)
-    if not (lat < ICEBERG_LATITUDE).any() or "Panama Canal" in canals:
+    round_horn = crossing_place(lat, lon, *_SOUTH_OF_AMERICA) is not None
+    limit = HORN_LATITUDE if round_horn else ICEBERG_LATITUDE
+    if not (lat < limit).any() or "Panama Canal" in canals:
         return lowest, []
-    if crossing_place(lat, lon, *_SOUTH_OF_AMERICA) is not None:
-        return lowest, []
-    within = replace(waters, south=ICEBERG_LATITUDE)
+    within = replace(waters, south=limit)
     try:
         others = [within.graph_path(a, b) for a, b in pairwise(ends)]
     except NoRouteError:
         return lowest, []
     longer = sum(map(line_length, others)) - sum(map(line_length, paths))
-    return ICEBERG_LATITUDE, [
-        f"{SOUTH_LEFT_OUT}: the shortest way goes beyond and is about "
+    return limit, [
+        f"{SOUTH_LEFT_OUT}{-limit:g} S is left out: the shortest way goes beyond and is about "
         f"{longer / NAUTICAL_MILE:.0f} nm shorter; icebergs are usual there and the weather is "
         "worst. Give a via point there to go that way."
     ]

@@ -23,7 +23,7 @@ _ROUNDABOUT: Final = 1.5  # times the geodesic
 _LATITUDE: Final = 72.0  #: [deg] beyond which ice is likely in all months
 _OPEN_WATER: Final = 0.1  #: greatest concentration of ice that counts as open water
 REACHES_ICE: Final = "The route reaches"  #: a note on ice begins so
-SOUTH_LEFT_OUT: Final = "Water south of 50 S is left out"  #: a note on a longer way begins so
+SOUTH_LEFT_OUT: Final = "Water south of "  #: a note on water left out begins so
 _SPACING: Final = 20.0 * NAUTICAL_MILE  #: of the places at which ways without a date are tested [m]
 #: Northern boundary of the Southern Winter Seasonal Zone (lon, lat) [deg], rhumb lines: Load Lines
 #: Convention 1966, Annex II, regulation 48; round Tasmania and South America roughly.

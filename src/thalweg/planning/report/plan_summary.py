@@ -231,8 +231,10 @@ def quality_text(plan: PlanData) -> str:
     if CLOSED_SHOALS in plan.proof.kind:
         deep = " in water that is deep enough by the depth layer"
     latitudes = plan.proof.kind.partition(IN_WATER)[2].partition(",")[0].partition(";")[0]
-    if any(note.startswith(SOUTH_LEFT_OUT) for note in plan.notes):
-        latitudes = latitudes or "north of 50 S"
+    for note in plan.notes:
+        if note.startswith(SOUTH_LEFT_OUT):
+            limit = note.removeprefix(SOUTH_LEFT_OUT).partition(" ")[0]
+            latitudes = latitudes or f"north of {limit} S"
     deep += f" {latitudes}" if latitudes else ""
     bounded = f"{_at_most(plan.gap, figure)}{_at_speeds(plan)}{deep}{_quality_of_front(plan)}"
     return f"{early}{bounded}{other_speeds}"
