@@ -10,6 +10,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.units import KNOT
 from thalweg.network import fixed_route
+from thalweg.planning.report.plan_summary import members_text
 
 START, GOAL = (0.0, 0.0), (0.0, 0.5)
 LENGTH = float(distance(*START, *GOAL))
@@ -82,3 +83,5 @@ def test_with_a_route_open_in_all_members_the_risk_is_of_all():
     assert row["infeasible"] == [] and row["time_risk_h"] == row["time_h"]["mean"]
     assert not any("No route of these plans" in note for note in found.notes)
     assert "mean of all 2" in str(found) and "NOT KEPT" not in str(found)
+    assert "(2.35 to 2.69; worst tenth 2.73)" in members_text(row, "EUR", "cvar")
+    assert "worst tenth" not in str(found)

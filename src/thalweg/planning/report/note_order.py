@@ -23,7 +23,7 @@ from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.unread_weather import WAVES_UNREAD, WIND_UNREAD
-from thalweg.planning.report.waiting_report import PASSES_TIME, WAITS
+from thalweg.planning.report.waiting_report import PASSES_TIME, STEMS, WAITS
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
@@ -51,6 +51,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     SQUAT_UNCOUNTED,
     WAITS,
     PASSES_TIME,
+    STEMS,
     TOO_STEEP,
     WAVES_UNCOUNTED,
     REACHES_ICE,

@@ -98,7 +98,9 @@ def summary_items(plan: PlanData) -> list[tuple[str, str]]:
     items += [("Distance", distance_text(best, canals)), ("Fuel", fuel_text(best))]
     items.append(("Cost", cost_text(best, canals)))
     if plan.ensemble:
-        items.append(("Members", members_text(_row_of_best(plan), best.currency)))
+        items.append(
+            ("Members", members_text(_row_of_best(plan), best.currency, plan.voyage.ensemble))
+        )
     if plan.voyage.objective == "energy" and best.energy_mwh is not None:
         items.append(("Energy", amount_text(best.energy_mwh, "MWh")))
     if plan.front is not None and len(plan.routes) > 1:
@@ -164,13 +166,14 @@ def limits_text(plan: PlanData) -> str:
     return f"{kept}; other ways were refused for: {', '.join(met[:3])}"
 
 
-def members_text(row: Mapping[str, Any], currency: str) -> str:
+def members_text(row: Mapping[str, Any], currency: str, measure: str | None = None) -> str:
     """Return the mean and the spread of a route over the members of an ensemble.
 
     Parameters
     ----------
     row : Of `Plan.ensemble`.
     currency : Of the cost.
+    measure : By which the route was chosen; with "cvar" the mean of the worst tenth follows.
     """
     kept = row["members"] - len(row["infeasible"])
     here = f"the other lines are those of member {row['shown_member']}"
@@ -181,9 +184,10 @@ def members_text(row: Mapping[str, Any], currency: str) -> str:
     for name, unit in (("time_h", "h"), ("fuel_t", "t"), ("cost", currency)):
         spread = row[name]
         if spread is not None:
-            column = amount_column([spread[k] for k in ("p10", "mean", "p90")], unit)
-            low, mean, high = column.texts
-            parts.append(f"{name.split('_')[0]} {mean} {column.unit} ({low} to {high})")
+            column = amount_column([spread[k] for k in ("p10", "mean", "p90", "cvar")], unit)
+            low, mean, high, worst = column.texts
+            tail = f"; worst tenth {worst}" if measure == "cvar" else ""
+            parts.append(f"{name.split('_')[0]} {mean} {column.unit} ({low} to {high}{tail})")
     return f"mean of {of}, with 10 and 90 %: {', '.join(parts)}; {here}"
 
 

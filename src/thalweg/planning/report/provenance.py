@@ -25,6 +25,7 @@ from thalweg.planning.report.squat_report import squat_notes
 from thalweg.planning.report.unread_weather import unread_weather_notes
 from thalweg.planning.report.waiting_report import (
     heavy_weather_warnings,
+    stemming_warnings,
     waiting_notes,
     waiting_weather_warnings,
 )
@@ -67,7 +68,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(_OF_METHODS)]
-    notes += slow_speed_warnings(route) + steep_wave_warnings(route, context.sea)
+    notes += slow_speed_warnings(route) + stemming_warnings(route)
+    notes += steep_wave_warnings(route, context.sea)
     if not any(note.startswith(UNREAD) for note in context.needs.notes):  # it says so already
         notes += unread_weather_notes(route, context.sea, context.ship)
     if context.voyage.objective == "comfort":
@@ -118,7 +120,8 @@ def given_route_warnings(
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     notes += guesses_of_files(sea.layers, frozenset(route.samples))
-    notes += slow_speed_warnings(route) + steep_wave_warnings(route, sea)
+    notes += slow_speed_warnings(route) + stemming_warnings(route)
+    notes += steep_wave_warnings(route, sea)
     notes += unread_weather_notes(route, sea, ship)
     notes += waiting_weather_warnings(route, ship) + heavy_weather_warnings(route, ship)
     notes += waiting_notes(route)

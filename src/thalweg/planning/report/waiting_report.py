@@ -1,4 +1,4 @@
-"""Waits on the way: weather above the limits or unknown while the ship waits, and fuel."""
+"""Waits on the way, in weather above the limits or unknown, and stems against a current."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.geodesy import format_position
+from thalweg.core.geodesy import format_position, format_position_minutes
+from thalweg.core.time import duration_text, utc_text
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.route import Route
@@ -15,6 +16,9 @@ from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGH
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
+STEMS: Final = "Stems the current"  #: a note on miles with hardly any way over ground begins so
+_LEAST_OVER_GROUND: Final = 1.0 * KNOT  # [m/s]
+_SHORTEST_STEMMING: Final = 0.5  # [h]
 PASSES_TIME: Final = "Waiting is not permitted"  #: notes on miles that pass the time begin so
 _ABOVE: Final = 1.0 + 1e-9  # times a limit: no rounding
 LEAST_WAIT_H: Final = 0.1  #: shorter waits are not stated [h]
@@ -147,4 +151,22 @@ def waiting_notes(route: Route) -> list[str]:
     return [
         f"Waiting takes no fuel on {route.waiting_h:.1f} h: the ship file has no hotel load. Give "
         "it, or plan without waits (--no-wait)."
+    ]
+
+
+def stemming_warnings(route: Route) -> list[str]:
+    """Return a warning where the ship makes hardly any way over ground against a current."""
+    made = np.asarray(route.samples["speed_over_ground"], float)
+    time = np.asarray(route.samples["time"], float)
+    under_way = np.diff(time) > 0.0
+    slow = np.flatnonzero((made[:-1] < _LEAST_OVER_GROUND) & under_way)
+    hours = float(np.sum(np.diff(time)[slow])) / HOUR
+    if not hours >= _SHORTEST_STEMMING:
+        return []
+    k = int(slow[np.argmin(made[slow])])
+    place = format_position_minutes(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
+    return [
+        f"{STEMS}: less than 1 kn over ground for {duration_text(hours * HOUR)}, down to "
+        f"{made[k] / KNOT:.1f} kn at {place} on {utc_text(float(time[k]))}. Little is left to keep "
+        "clear of dangers: see whether a later departure arrives as early."
     ]

@@ -11,7 +11,7 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.search import ShipOnNetwork, earliest_arrival
 
 
-def ship_on_network(
+def ship_for_search(
     context: PlanningContext, network: Network, frozen: FrozenSea, limits: Limits
 ) -> ShipOnNetwork:
     """Return the ship with the sea at the stations of a network, within limits."""
@@ -43,7 +43,7 @@ def isochrones(
     ndarray (N,) : Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
     """
     everywhere = earliest_arrival(
-        ship_on_network(context, network, frozen, context.needs.limits),
+        ship_for_search(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=None,
         depart=depart,

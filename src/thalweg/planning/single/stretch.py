@@ -29,7 +29,7 @@ from thalweg.planning.single.exceeded_limits import (
     without_exceeding_edges,
 )
 from thalweg.planning.single.fewer_waits import passing_time_notes, with_best_waits
-from thalweg.planning.single.isochrones import isochrones, ship_on_network
+from thalweg.planning.single.isochrones import isochrones, ship_for_search
 from thalweg.planning.single.lane_keeping import by_lanes_of_traffic
 from thalweg.planning.single.late_paths import LatePaths
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
@@ -249,7 +249,7 @@ def _late_paths(
 
     def ship_until(time: float) -> ShipOnNetwork:
         sea = seas.freeze(context, network, start, max(end, min(time, context.data_end)))
-        return ship_on_network(context, network, sea, limits)
+        return ship_for_search(context, network, sea, limits)
 
     return LatePaths(ship_until(end), query, result.arrive, refine, sail, ship_until)
 
@@ -327,7 +327,7 @@ def _run_search(
     limits: Limits,
     window: tuple[float, float],
 ) -> SearchResult:
-    ship = ship_on_network(context, network, frozen, limits)
+    ship = ship_for_search(context, network, frozen, limits)
     options = {
         "start": network.meta.start,
         "goal": network.meta.goal,
@@ -359,7 +359,7 @@ def _bound(
                 added, factors, graded=bool(zones.lanes) or zones.shoals is not None
             )
     return lower_bound(
-        ship_on_network(context, network, frozen, context.needs.limits),
+        ship_for_search(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=float(result.path_arrive[0]),

@@ -1,0 +1,31 @@
+"""The warning where a ship makes hardly any way over ground."""
+
+import numpy as np
+import pytest
+
+from thalweg import Sea, Ship, evaluate
+from thalweg.core.units import KNOT
+from thalweg.planning.report.note_order import count_of_dangers
+from thalweg.planning.report.waiting_report import stemming_warnings
+
+
+@pytest.mark.parametrize(("against_kn", "warned"), [(9.5, True), (8.8, False), (-3.0, False)])
+def test_a_ship_that_stems_a_current_is_warned_of(against_kn, warned):
+    """Over 0.1 degree of longitude a ship of 10 kn makes 0.5 kn for 12 h."""
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: np.where(
+                (x > -4.6) & (x < -4.5), -against_kn * KNOT, 0.0
+            ),
+            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
+        }
+    )
+    route = evaluate(
+        [(0.0, -5.0), (0.0, -4.0)], ship=Ship.simple(speed_kn=10.0), sea=sea, depart="2026-01-01"
+    )
+    notes = stemming_warnings(route)
+    assert len(notes) == warned
+    for note in notes:
+        assert note.startswith("Stems the current: less than 1 kn over ground for ")
+        assert "down to 0.5 kn at 00 00.0N 004 3" in note
+        assert count_of_dangers([note]) == 1
