@@ -29,6 +29,7 @@ from thalweg.studies import Study, row_runner, run_study, study_rows, study_run,
 from thalweg.studies.row_runner import run_rows, ship_of_request
 from thalweg.studies.study_axes import axis_values
 from thalweg.studies.study_parts import read_parts
+from thalweg.studies.study_run import has_route
 from thalweg.studies.study_summary import median_interval
 
 DAYS = [f"2026-03-0{day}T00:00Z" for day in range(1, 5)]
@@ -259,7 +260,7 @@ def test_a_study_without_any_route_is_summarised_with_the_reason(folder, tmp_pat
     path = folder / "late.yaml"
     path.write_text(yaml.safe_dump(study.to_dict()))
     assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 0
-    assert "2 of them without a route\n1 of these: " in capsys.readouterr().out
+    assert "2 of them without a route within the limits\n1 of these: " in capsys.readouterr().out
     assert main(["study", "summary", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "1 voyage without a route (OutsidePeriodError)" in printed and "2027" in printed
@@ -428,3 +429,25 @@ def test_a_range_that_runs_backwards_is_stated_as_it_was_given():
     given = {"from": "2026-01-10", "to": "2026-01-09", "step_h": 24}
     with pytest.raises(InputError, match="from 2026-01-10, to 2026-01-09, step_h 24"):
         axis_values("depart", given)
+
+
+def test_a_row_whose_route_exceeds_a_limit_has_no_route():
+    """A run stated 0 of them without a route, and its summary a share of 1.0."""
+    assert has_route({"refusal": None, "feasible": True})
+    assert has_route({"refusal": None})  # of a front, whose row has no such entry
+    assert not has_route({"refusal": None, "feasible": False})
+    assert not has_route({"refusal": "NoRouteError", "reason": "..."})
+
+
+@pytest.mark.slow
+def test_sampled_values_are_columns_of_the_table_of_voyages(tmp_path):
+    study = Study.from_dict(
+        {
+            "voyage": {"start": [47.0, -5.0], "goal": [47.3, -5.3], "depart": "2026-01-01"},
+            "ship": "handysize-bulker", "sea": "calm", "coast": "c", "resolution_nm": 4.0,
+            "sample": {"count": 2, "seed": 1, "speed_kn": {"uniform": [12.0, 14.0]}},
+        }
+    )  # fmt: skip
+    run_study(study, tmp_path)
+    table = summarise_study(tmp_path).voyages
+    assert table["speed_kn"].between(12.0, 14.0).all() and table["speed_kn"].nunique() == 2

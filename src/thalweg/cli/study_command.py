@@ -72,6 +72,7 @@ def add_command(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> int:
     from thalweg.studies import load_study, run_study
+    from thalweg.studies.study_run import has_route
 
     _refuse_ready_name(arguments.study)
     study = load_study(arguments.study)
@@ -83,7 +84,11 @@ def _run(arguments: argparse.Namespace) -> int:
     reasons: Counter[str] = Counter()
 
     def progress(state: StudyProgress) -> None:
-        reasons.update(row["reason"] for row in state.rows if row["refusal"] is not None)
+        reasons.update(
+            str(row["reason"] or row.get("first_violation"))
+            for row in state.rows
+            if not has_route(row)
+        )
         report(_words(state))
 
     state = run_study(
@@ -95,7 +100,7 @@ def _run(arguments: argparse.Namespace) -> int:
     )
     print(
         f"{state.done} of {state.total} voyages have a result in {arguments.out}; "
-        f"{state.new} were planned now, {state.refused} of them without a route"
+        f"{state.new} were planned now, {state.refused} of them without a route within the limits"
     )
     for reason, count in reasons.most_common(1):
         print(f"{count} of these: {reason}")
@@ -129,7 +134,9 @@ def _ready(arguments: argparse.Namespace) -> int:
 
 def _words(state: StudyProgress) -> str:
     left = state.seconds_left
-    text = f"{state.done} of {state.total} voyages, {state.refused} without a route"
+    text = (
+        f"{state.done} of {state.total} voyages, {state.refused} without a route within the limits"
+    )
     if left is None or state.done == state.total:
         return text
     return (

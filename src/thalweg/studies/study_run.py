@@ -46,7 +46,7 @@ class StudyProgress:
     done, total : int
         Rows with a result, and all rows.
     refused : int
-        Rows of this run without a route.
+        Rows of this run without a route, or whose route exceeds a limit.
     seconds : float
         Since the start of this run [s].
     new : int
@@ -166,7 +166,7 @@ def _run_missing(
     for results in _results(chunks, str(study.folder), workers, scheduler):
         write_part(results, folder)
         done += len(results)
-        refused += sum(result["refusal"] is not None for result in results)
+        refused += sum(not has_route(result) for result in results)
         state = StudyProgress(
             len(rows) - len(missing) + done, len(rows), refused, time.monotonic() - begin, done,
             tuple(results),
@@ -174,6 +174,11 @@ def _run_missing(
         if progress is not None:
             progress(state)
     return state
+
+
+def has_route(result: Mapping[str, Any]) -> bool:
+    """Return whether a row has a route that keeps the limits."""
+    return result["refusal"] is None and result.get("feasible") is not False
 
 
 def _check_single_ship(study: Study, rows: list[StudyRow]) -> None:

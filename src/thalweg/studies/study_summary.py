@@ -235,7 +235,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
         _best(table, by),
         front_statistics(frame[usable], axes),
         _annual(study, frame[usable], ways),
-        _voyages(frame, list(study.axes), figures),
+        _voyages(frame, [*study.axes, *study.sample], figures),
         choices_by_axis(frame, usable, ways),
         month_by_hour(frame[usable], figures),
         _best_months(table, by),

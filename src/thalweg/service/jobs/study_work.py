@@ -128,7 +128,8 @@ def _write_study(
         if path.suffix == ".csv":
             write_text(path, order.without_paths(path.read_text("utf-8")))
     write_text(order.path / "voyages.csv", order.without_paths(frame.to_csv(index=False)))
-    refused = int(frame["refusal"].notna().sum())
+    over_limit = frame["feasible"].eq(False) if "feasible" in frame else False
+    refused = int((frame["refusal"].notna() | over_limit).sum())
     return {
         "title": study.name,
         "feasible": refused < len(frame),
