@@ -110,7 +110,7 @@ def test_the_waits_of_a_route_are_totalled(capsys, tmp_path, ship):
     assert [row["waiting_h"] for row in scored["waypoints"]] == [0.5, 1.25, 0.0]
     assert main(world) == 0
     told = capsys.readouterr().out
-    assert "of it waiting 1 h 45 min" in told
+    assert "of it waiting 1 h 45 min, most of it at 52 06.0N 003 00.0E" in told
     no_depth = "No depth in the data: under-keel clearance was not checked."
     assert no_depth in scored["notes"] and "depth under the keel NOT checked" in told
     path.write_text("lat,lon,time\n52,3,2026-01-01T00:00Z\n52.2,3,\n")

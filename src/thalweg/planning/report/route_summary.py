@@ -40,6 +40,7 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _NAMES = (_WAVES, *_WIND, *_CURRENT)
 _UNDER_KEEL_CLEARANCE: Final = codes.REASONS[codes.DEPTH]
 _SAME_CLEARANCE: Final = 0.005  # [m]
+_MOST: Final = 0.99  # of the waits at one place, so that no other is named
 _TENTH: Final = 0.1  # by which waves in a wait are higher to be named [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SEE_NOTES: Final = {  # first words of notes on what the referee does not check, and its name
@@ -86,15 +87,24 @@ def route_items(
 
 
 def arrival_text(route: Route) -> str:
-    """Return the arrival and the time from departure, waits named."""
+    """Return the arrival and the time from departure, waits and their place named."""
     if not math.isfinite(route.arrive):
         return "never: the route cannot be sailed to its end"
-    waits = (
-        f", of it waiting {duration_text(route.waiting_h * HOUR)}"
-        if route.waiting_h >= 1.0 / 60.0
-        else ""
-    )
+    waits = ""
+    if route.waiting_h >= 1.0 / 60.0:
+        waits = f", of it waiting {duration_text(route.waiting_h * HOUR)}{_where_waits(route)}"
     return f"{utc_text(route.arrive)}, after {duration_text(route.arrive - route.depart)}{waits}"
+
+
+def _where_waits(route: Route) -> str:
+    """Return where the ship waits longest: at the start, or at a position on the way."""
+    wait = np.asarray(route.track.wait, float)
+    at = int(np.argmax(wait))
+    where = "at the start"
+    if at > 0:
+        track = route.track
+        where = f"at {format_position_minutes(float(track.lat[at]), float(track.lon[at]))}"
+    return f" {where}" if wait[at] >= _MOST * wait.sum() else f", most of it {where}"
 
 
 def distance_text(route: Route, canals: Sequence[Canal]) -> str:

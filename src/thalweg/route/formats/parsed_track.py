@@ -324,7 +324,7 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
         raise InputError(
             f"The route file {name!r} has no departure that can be used.{''.join(unused)}",
             "The departure is the time of its first waypoint, or an argument.",
-            "Give depart, such as 2026-01-01T06:00Z.",
+            "Give a departure (depart, or --depart), such as 2026-01-01T06:00Z.",
             file=name,
             field="depart",
         )

@@ -193,7 +193,7 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
         raise InputError(
             "The route has no departure.",
             "A list of positions has no times.",
-            "Give depart, such as 2026-01-01T06:00Z.",
+            "Give a departure (depart, or --depart), such as 2026-01-01T06:00Z.",
             field="depart",
         )
     return Track.from_positions(route, depart=depart)
