@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,6 +113,7 @@ def best_departure(
     most = _MAX_DEPARTURES_RESTRICTED_WAITING if restricted else _MAX_DEPARTURES
     departures = _departures(given, first, last, window.step, most)
     tried = [sail(t) for t in departures]
+    durations = tuple((float(t), one.duration) for t, one in zip(departures, tried))
     tried += [sail(t) for t in _after_waiting(tried, last)]
     best = min(tried, key=_comparison_key)
     if not best.found:
@@ -128,7 +129,7 @@ def best_departure(
             high = right
         else:
             low = left
-    return best
+    return replace(best, departures=durations)
 
 
 def _departures(

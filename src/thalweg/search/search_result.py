@@ -87,6 +87,9 @@ class SearchResult:
     nearest_node : int
         The settled node nearest to the goal; -1 without a goal.
     work : SearchWork
+    departures : tuple of (departure, duration)
+        Of a window: the departures that were tried in it, and how long the voyage takes with waits
+        [s]; inf without a path.
     """
 
     path: NDArray[np.int64]
@@ -96,6 +99,7 @@ class SearchResult:
     node_arrival: NDArray[np.float64]
     nearest_node: int
     work: SearchWork
+    departures: tuple[tuple[float, float], ...] = ()
 
     @property
     def found(self) -> bool:

@@ -23,7 +23,7 @@ from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.unread_weather import WAVES_UNREAD, WIND_UNREAD
-from thalweg.planning.report.waiting_report import PASSES_TIME, STEMS, WAITS
+from thalweg.planning.report.waiting_report import DEPARTURES, PASSES_TIME, STEMS, WAITS
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
@@ -76,6 +76,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     WAVES_OUT_OF_RANGE,
     (OUT_OF_RANGE, BELOW_LOWEST),
     SPEEDS_CHOSEN,
+    DEPARTURES,
     SHOAL_DETOUR,
     LANE_DETOUR,
 )

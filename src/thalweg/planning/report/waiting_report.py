@@ -1,8 +1,9 @@
-"""Waits on the way, in weather above the limits or unknown, and stems against a current."""
+"""Waits on the way, in weather above the limits or unknown, stems, and departures of a window."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -16,6 +17,8 @@ from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGH
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
+DEPARTURES: Final = "Departures in the window"  #: a note on them begins so
+_SHOWN: Final = 7  # departures of a window
 STEMS: Final = "Stems the current"  #: a note on miles with hardly any way over ground begins so
 _LEAST_OVER_GROUND: Final = 1.0 * KNOT  # [m/s]
 _SHORTEST_STEMMING: Final = 0.5  # [h]
@@ -169,4 +172,32 @@ def stemming_warnings(route: Route) -> list[str]:
         f"{STEMS}: less than 1 kn over ground for {duration_text(hours * HOUR)}, down to "
         f"{made[k] / KNOT:.1f} kn at {place} on {utc_text(float(time[k]))}. Little is left to keep "
         "clear of dangers: see whether a later departure arrives as early."
+    ]
+
+
+def window_notes(
+    departures: Sequence[tuple[float, float]], approach_times: tuple[float, float]
+) -> list[str]:
+    """Return how long the voyage takes by its departure, as a note; none for one departure.
+
+    Parameters
+    ----------
+    departures : Times of departure at sea and durations with waits, of the search [s]; inf where
+        no route was found.
+    approach_times : In the approaches before and after the voyage at sea [s].
+    """
+    if len(departures) < 2:
+        return []
+    last = len(departures) - 1
+    steps = min(_SHOWN, len(departures)) - 1
+    shown = [departures[round(k * last / steps)] for k in range(steps + 1)]
+    texts = [
+        f"{utc_text(depart - approach_times[0])} "
+        + (duration_text(time + sum(approach_times)) if math.isfinite(time) else "no route")
+        for depart, time in shown
+    ]
+    some = "" if len(shown) == len(departures) else f", {len(shown)} of {len(departures)} tried"
+    return [
+        f"{DEPARTURES} and how long the voyage takes, on the network of the search{some}: "
+        f"{'; '.join(texts)}."
     ]

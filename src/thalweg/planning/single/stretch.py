@@ -21,6 +21,7 @@ from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext, expected_speed
+from thalweg.planning.report.waiting_report import window_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.currents_too_strong import leaving_after_current
 from thalweg.planning.single.exceeded_limits import (
@@ -207,6 +208,7 @@ def _search_and_refine(
     paths = _late_paths(context, network, limits, (result, route), seas)
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
+    passing += window_notes(result.departures, context.approach_times)
     route, later = with_best_waits(context, route, paths, last_departure=window[1])
     notes = network.meta.notes if network.meta.kind == "layered" else ()
     exceeded = (f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])

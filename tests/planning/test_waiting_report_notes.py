@@ -1,4 +1,6 @@
-"""The warning where a ship makes hardly any way over ground."""
+"""Warnings of ships that stem a current, and the departures of a window."""
+
+import math
 
 import numpy as np
 import pytest
@@ -6,7 +8,7 @@ import pytest
 from thalweg import Sea, Ship, evaluate
 from thalweg.core.units import KNOT
 from thalweg.planning.report.note_order import count_of_dangers
-from thalweg.planning.report.waiting_report import stemming_warnings
+from thalweg.planning.report.waiting_report import stemming_warnings, window_notes
 
 
 @pytest.mark.parametrize(("against_kn", "warned"), [(9.5, True), (8.8, False), (-3.0, False)])
@@ -29,3 +31,13 @@ def test_a_ship_that_stems_a_current_is_warned_of(against_kn, warned):
         assert note.startswith("Stems the current: less than 1 kn over ground for ")
         assert "down to 0.5 kn at 00 00.0N 004 3" in note
         assert count_of_dangers([note]) == 1
+
+
+def test_departures_of_a_window_are_listed():
+    day = 86400.0
+    departures = [(k * day, (80.0 + k) * 3600.0 if k < 9 else math.inf) for k in range(13)]
+    (note,) = window_notes(departures, (3600.0, 1800.0))
+    assert note.startswith("Departures in the window and how long the voyage takes")
+    assert ", 7 of 13 tried: 1969-12-31 23:00 UTC 3 d 9 h 30 min; 1970-01-02 23:00 UTC" in note
+    assert note.endswith("1970-01-12 23:00 UTC no route.") and note.count(";") == 6
+    assert window_notes(departures[:1], (0.0, 0.0)) == window_notes([], (0.0, 0.0)) == []
