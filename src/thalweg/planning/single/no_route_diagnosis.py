@@ -304,9 +304,9 @@ _ADVICE_TIDE = (
 )
 _TOO_SLOW = "current too strong for the speed that the weather leaves"
 _ADVICE_STALL = (
-    "Her speed loss in wind and waves is the cause. Depart at another time, or give "
-    "the ship limits (limits.max_significant_wave_height_m, limits.max_wind_speed_kn), so that "
-    "plans go round such weather or wait for it. If she keeps more speed in truth, choose another "
+    "Her speed loss in wind and waves is the cause. Depart at another time, or give the ship "
+    "limits below that weather (limits.max_significant_wave_height_m, limits.max_wind_speed_kn): "
+    "plans go round it or wait for it then. If she keeps more speed in truth, choose another "
     "models.speed_loss: kwon_2008 is for winds up to Beaufort 6, of large ships 8."
 )
 _LONGER = " Or add a longer forecast."
