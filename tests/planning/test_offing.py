@@ -257,16 +257,18 @@ def test_an_end_a_little_nearer_to_land_than_the_offing_can_be_reached(share):
 
 
 @pytest.mark.parametrize(
-    ("place", "least"),
+    ("place", "least", "within"),
     [
-        ((-33.8517, 151.2250), 0.1),  # Sydney: the harbour is 0.3 nm wide
-        ((50.15, -5.0333), 0.25),  # Carrick Roads
-        ((-34.0467, 18.3533), 0.5),  # Hout Bay
+        ((-33.8517, 151.2250), 0.1, 5.0),  # Sydney: the harbour is 0.3 nm wide
+        ((50.15, -5.0333), 0.25, 3.0),  # Carrick Roads
+        ((-34.0467, 18.3533), 0.5, 3.0),  # Hout Bay
     ],
 )
-def test_as_much_distance_from_land_as_possible_is_kept_on_the_way_out_of_a_harbour(place, least):
+def test_as_much_distance_from_land_as_possible_is_kept_on_the_way_out_of_a_harbour(
+    place, least, within
+):
     """Routes touched headlands up to 7 nm from such a place."""
     chart = chart_off_land(world_chart(), [Endpoint("", *place, 0.0)], 2.0 * NAUTICAL_MILE)
     at_end, round_it = (d for d in chart.offing.discs if (d.lat, d.lon) == place)
-    assert (round_it.least, round_it.radius) == (least * NAUTICAL_MILE, 10.0 * NAUTICAL_MILE)
+    assert (round_it.least, round_it.radius) == (least * NAUTICAL_MILE, within * NAUTICAL_MILE)
     assert at_end.radius == 0.0
