@@ -14,6 +14,7 @@ from thalweg.planning.report.given_route_report import (
 )
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.provenance import given_route_warnings
+from thalweg.planning.request.swapped_degrees import misplaced_name_notes
 from thalweg.route import read_track
 from thalweg.route.route_tables import LEG_KINDS
 
@@ -155,3 +156,20 @@ def test_lanes_do_not_count_round_the_sea_ends_of_approaches():
             track=SimpleNamespace(lat=lat), legs={"leg_kind": np.array(kinds), "length": lat[1:]}
         )
         assert _sea_ends(route) == ends
+
+
+def test_waypoints_with_the_name_of_a_port_elsewhere_are_questioned():
+    names = {
+        (38.6, 9.4, 0): "Lisbon",  # a letter W was forgotten
+        (10.2, 54.4, 0): "Kiel",
+        (32.6, -16.9, 0): "Funchal",
+        (50.0, -20.0, 0): "WP 3",
+        (50.0, -21.0, 0): "Rotterdam",  # somewhere else, not by a sign
+    }
+    notes = misplaced_name_notes(names)
+    assert notes == [
+        "Check the position of the waypoint 'Lisbon', 38.6000N 9.4000E: with the other sign of the "
+        "longitude it would be at Lisbon, PT.",
+        "Check the position of the waypoint 'Kiel', 10.2000N 54.4000E: with latitude and longitude "
+        "swapped it would be at Kiel, DE.",
+    ]

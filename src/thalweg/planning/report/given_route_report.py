@@ -25,6 +25,7 @@ from thalweg.planning.request.offing_choice import (
     default_offing,
     size_restriction,
 )
+from thalweg.planning.request.swapped_degrees import misplaced_name_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.carried_extensions import visits_of
@@ -57,7 +58,8 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     lat, lon = np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
     if not chart.passages or len(lat) < 2:
         return []
-    notes = _near_land(route, chart, ship)
+    notes = misplaced_name_notes(route.track.extensions.names)
+    notes += _near_land(route, chart, ship)
     in_approach = _in_approach(route, chart)
     legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach)]
     miles = max((most_miles_over_land(chart, lat[k], lon[k]) for k in legs), default=0.0)

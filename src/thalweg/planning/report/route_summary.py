@@ -14,7 +14,12 @@ from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
-from thalweg.planning.report.approach_report import APPROACH_TOO_SMALL, PORT_TOO_SHALLOW
+from thalweg.planning.report.approach_report import (
+    APPROACH_TOO_SMALL,
+    LOW_BRIDGE,
+    OVER_LAND,
+    PORT_TOO_SHALLOW,
+)
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.filled_weather import wave_shares
@@ -46,6 +51,8 @@ _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SEE_NOTES: Final = {  # first words of notes on what the referee does not check, and its name
     CROSSES_SHOAL: "a charted shoal",
     AGAINST_TRAFFIC: "traffic lanes",
+    OVER_LAND: "an approach over land",
+    LOW_BRIDGE: "the size of the ship in a port or passage",
     PORT_TOO_SHALLOW: "the size of the ship in a port or passage",
     APPROACH_TOO_SMALL: "the size of the ship in a port or passage",
     PASSAGE_CLOSED: "the size of the ship in a port or passage",

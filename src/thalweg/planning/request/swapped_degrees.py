@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Final
 
@@ -13,12 +13,14 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.voyage_parts import Place
+from thalweg.route.carried_extensions import Visit
 
 #: A position on land within this distance of a port is taken as that port [m].
 NEAR_PORT: Final = 10.0 * NAUTICAL_MILE
 CHECK_POSITION: Final = "Check the position"  #: a note on swapped degrees begins so
 _NEAR_WATER: Final = 60_000.0  # [m]
 _FAR_FROM_PORTS: Final = 60.0 * NAUTICAL_MILE
+_SHORT_NAME: Final = 3  # letters of a waypoint that are no name of a port
 _FAR_SHORTER: Final = 5.0  # times, where one end is swapped and the other is not
 _ONE_COMMA: Final = re.compile(r"([+-]?\d+),(\d+)")
 _SWAPPED: Final = "latitude and longitude swapped?"
@@ -156,3 +158,33 @@ def _degrees_of(place: Place) -> tuple[Position | None, bool]:
     if not isinstance(place, str):
         return (float(place[0]), float(place[1])), True
     return parse_position(place), not any(letter.isalpha() for letter in place)
+
+
+def misplaced_name_notes(names: Mapping[Visit, str]) -> list[str]:
+    """Return notes on waypoints that would be at the port of their name with another sign or order.
+
+    Parameters
+    ----------
+    names : Of waypoints, by visit.
+    """
+    notes = []
+    for (lat, lon, _), name in names.items():
+        port = PORTS.find(name) if len(name) > _SHORT_NAME else None
+        if port is None or float(distance(lat, lon, port.lat, port.lon)) < _FAR_FROM_PORTS:
+            continue
+        turned = {
+            "with the other sign of the longitude": (lat, -lon),
+            "with the other sign of the latitude": (-lat, lon),
+            "with both other signs": (-lat, -lon),
+            "with latitude and longitude swapped": (lon, lat),
+        }
+        for words, place in turned.items():
+            if abs(place[0]) > 90.0:
+                continue
+            if float(distance(*place, port.lat, port.lon)) < _FAR_FROM_PORTS:
+                notes.append(
+                    f"{CHECK_POSITION} of the waypoint {name!r}, {format_position(lat, lon)}: "
+                    f"{words} it would be at {port.label}."
+                )
+                break
+    return notes
