@@ -279,3 +279,15 @@ def test_a_crossing_is_stated_the_same_after_rounding(off, against):
     lat, lon = np.array([y - dy, y + dy]), np.array([x - dx, x + dx])
     route = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
     assert any("Runs against" in note for note in lane_notes(chart, route)) == against
+
+
+def test_voyages_to_brest_use_the_inshore_zone_off_ushant():
+    """The Chenal du Four leads through it; a ship of 26 m from Falmouth went 24 nm round it."""
+    ushant = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Off Ushant")
+    falmouth, brest, biscay = (50.05, -5.05), (48.32, -4.85), (46.0, -4.5)
+
+    def zones(goal):
+        return [one for one in ushant.lanes_of_voyage([falmouth, goal]) if INSHORE in one.name]
+
+    assert zones(brest) == [] and len(zones(biscay)) >= 1
+    assert len(ushant.lanes_of_voyage([falmouth, brest])) >= 2

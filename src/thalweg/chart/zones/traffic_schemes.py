@@ -34,6 +34,7 @@ AGAINST_FACTOR: Final = 10.0
 PORT_RADIUS: Final = 12.0 * NAUTICAL_MILE
 INSHORE: Final = "inshore traffic zone"
 SMALL: Final = 20.0  #: length [m] below which ships may use inshore traffic zones
+_NEAR_PORT: Final = 30.0 * NAUTICAL_MILE  # ends so near a port behind an inshore zone go to it
 _CLEAR: Final = 0.25  # of the width of a lane that plans keep off the separation zone
 _ANY_COURSE: Final = -1.0  # tolerance of an area in which every course is against
 _LONGEST_DETOUR: Final = 4.0  # times the geodesic: farther schemes are left out
@@ -56,6 +57,8 @@ class TrafficScheme:
         Distance from the line within which it counts [m], on the side of the traffic along the
         line and on that of the traffic against it.
     inshore : "starboard", "port", "both" or "": sides where an inshore zone follows the lane.
+    ports : Ports behind the inshore zones, which ships reach through them (Rule 10 (d) (ii)):
+        Brest through the Chenal du Four (general knowledge, unchecked).
     """
 
     name: str
@@ -65,6 +68,7 @@ class TrafficScheme:
     starboard: float
     port: float
     inshore: str = ""
+    ports: tuple[Position, ...] = ()
     source: str = ""
 
     @property
@@ -79,12 +83,20 @@ class TrafficScheme:
     def lanes_of_voyage(
         self, ends: Sequence[Position], *, inshore: bool = True
     ) -> list[TrafficLane]:
-        """Return the lanes, and the inshore traffic zones without an end (lat, lon) inside."""
+        """Return the lanes, and the inshore traffic zones without an end (lat, lon) inside.
+
+        An end near a port behind the zones, which ships reach through them, opens them as well.
+        """
         import shapely
 
         places = shapely.points([(lon, lat) for lat, lon in ends])
+        behind = any(
+            float(distance(*end, *port)) < _NEAR_PORT for end in ends for port in self.ports
+        )
         opened = {
-            side for side, lane in self._lanes_and_zones if side and lane.shape.covers(places).any()
+            side
+            for side, lane in self._lanes_and_zones
+            if side and (behind or lane.shape.covers(places).any())
         }
         return [
             lane
@@ -222,7 +234,11 @@ def _read_schemes() -> tuple[TrafficScheme, ...]:
             float(row[f"{part}_nm"]) * NAUTICAL_MILE
             for part in ("zone", "lane", "starboard", "port")
         )
-        more = row["inshore"], row["source"]
+        ports = tuple(
+            (float(lat), float(lon))
+            for lat, lon in (place.split(",") for place in row["ports"].split())
+        )
+        more = row["inshore"], ports, row["source"]
         schemes.append(TrafficScheme(row["name"], line, zone, lane, starboard, port, *more))
     return tuple(schemes)
 
