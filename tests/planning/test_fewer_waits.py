@@ -8,9 +8,9 @@ import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Track, Voyage, evaluate, plan
 from thalweg.core.errors import NoRouteError
-from thalweg.core.units import HOUR
+from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.note_order import danger_first
-from thalweg.planning.report.waiting_report import PASSES_TIME
+from thalweg.planning.report.waiting_report import PASSES_TIME, stemming_warnings
 from thalweg.planning.single.fewer_waits import with_fewer_waits
 from thalweg.planning.single.late_paths import LatePaths
 from thalweg.planning.single.waits_above_limits import without_waits_above_limits
@@ -261,3 +261,32 @@ def test_a_deadline_that_is_missed_by_far_is_refused_before_refinement(planned, 
     with pytest.raises(NoRouteError, match="No route arrives by 2026-05-01T12:00") as refusal:
         planned(lambda t, lat, lon: 1.0 + 0.0 * t, arrive_by="2026-05-01T12:00Z")
     assert "The earliest arrival is about 2026-05-01T16:1" in str(refusal.value)
+
+
+@pytest.mark.parametrize("wait", [True, False])
+def test_a_ship_leaves_later_rather_than_stem_a_current(wait):
+    """From hour 5.4 to hour 8 a ship of 10 kn would make 0.3 kn over ground in a strait."""
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: np.where(
+                (x > 0.9) & (x < 1.1) & (t < 8.0 * HOUR), -9.7 * KNOT, 0.0
+            ),
+            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
+        },
+        period=(0.0, 40.0 * HOUR),
+    )
+    found = plan(
+        Voyage(start=(0.0, 0.0), goal=(0.0, 2.0), depart="1970-01-01T00:00Z", wait=wait),
+        ship=Ship.simple(speed_kn=10.0, draught_m=5.0),
+        sea=sea,
+        chart=Chart.open_water(-0.3, 0.3, -0.2, 2.2),
+        resolution=8_000.0,
+        proof=0.0,
+    )
+    assert found.best.time_h == pytest.approx(14.5, abs=0.3)
+    assert bool(stemming_warnings(found.best)) != wait
+    if wait:
+        assert np.flatnonzero(found.best.track.wait).tolist() == [0]
+        assert 1.5 < found.best.waiting_h < 2.7
+        (note,) = (note for note in found.notes if "would stem the current" in note)
+        assert note.startswith("Arrives ") and "less than 1 kn over ground for 2 h 3" in note

@@ -8,22 +8,28 @@ from itertools import islice
 import numpy as np
 
 from thalweg.core.geodesy import distance
-from thalweg.core.time import format_time
+from thalweg.core.time import duration_text, format_time
 from thalweg.core.units import HOUR
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import (
     LEAST_WAIT_H,
     PASSES_TIME,
+    stemming_warnings,
     waiting_weather_warnings,
 )
 from thalweg.planning.single.late_paths import LatePaths, after_wait_at_berth
 from thalweg.planning.single.sheltered_waits import routes_with_one_wait, with_sheltered_waits
-from thalweg.planning.single.waits_above_limits import without_waits_above_limits
+from thalweg.planning.single.waits_above_limits import (
+    ARRIVES_LATER,
+    without_waits_above_limits,
+)
 from thalweg.route import Route
 from thalweg.route.refinement.better_route import comparison_key, shorten_waits
 
 #: By how much a route with fewer waits may arrive later: a minute [s], or this share of the voyage.
 _LATER, _LATER_SHARE = 60.0, 1e-3
+#: ... where she would stem a current otherwise.
+_LATER_THAN_STEMMING, _SHARE_OF_STEMMING = 600.0, 0.01
 _ROUNDING = 0.5  # of arrivals that are equal [s]
 _WORTH = 1e-3  # share of the time under way that is worth another route with as many waits
 _MOST_REFINED = 3  # departures whose paths are refined
@@ -56,7 +62,14 @@ def with_best_waits(
     if sheltered is not best:
         return sheltered, notes
     fewer = with_fewer_waits(context, best, paths, last_departure=last_departure)
-    return with_sheltered_waits(context, fewer, latest), []
+    later, stems = fewer.arrive - best.arrive, stemming_warnings(best)
+    if later > _LATER and stems and not stemming_warnings(fewer):
+        text = stems[0].partition(":")[2].partition(". ")[0].strip()
+        notes = [
+            f"{ARRIVES_LATER}{duration_text(later)} later than is possible: to arrive earlier the "
+            f"ship would stem the current, {text}."
+        ]
+    return with_sheltered_waits(context, fewer, latest), notes
 
 
 def latest_allowed(context: PlanningContext, route: Route, *, share: float = _LATER_SHARE) -> float:
@@ -68,6 +81,8 @@ def latest_allowed(context: PlanningContext, route: Route, *, share: float = _LA
     share : Of its time, by which the other one is not later either.
     """
     later = min(_LATER, share * route.time_h * HOUR)
+    if context.voyage.wait and share < math.inf and stemming_warnings(route):
+        later = max(later, min(_LATER_THAN_STEMMING, _SHARE_OF_STEMMING * route.time_h * HOUR))
     return max(min(route.arrive + later, context.latest_arrival), route.arrive)
 
 
@@ -87,9 +102,11 @@ def with_fewer_waits(
     Notes
     -----
     The waits of the route are put together first. The other route is that of the latest departure
-    that arrives by the same time: she has no time to spare for waits and detours.
+    that arrives by the same time: she has no time to spare for waits and detours. It replaces one
+    without waits, too, that stems a current with hardly any way over ground.
     """
-    if not route.feasible or route.waiting_h <= LEAST_WAIT_H:
+    stems = bool(stemming_warnings(route)) and context.voyage.wait
+    if not route.feasible or (route.waiting_h <= LEAST_WAIT_H and not stems):
         return route
     latest = latest_allowed(context, route)
     best = _with_joined_waits(context, _with_wait_at_start(context, route, latest), latest)
@@ -110,9 +127,10 @@ def with_fewer_waits(
         if tried.feasible:
             tried = _with_joined_waits(context, tried, latest)
         if tried.feasible and tried.arrive > route.arrive + _ROUNDING:
-            tried = shorten_waits(tried, context.evaluate)
+            shorter = shorten_waits(tried, context.evaluate)
+            tried = tried if stems and stemming_warnings(shorter) else shorter
         if _is_allowed(context, tried, route, latest):
-            best = min(best, tried, key=lambda item: (_count(item), _under_way(item)))
+            best = min(best, tried, key=_waits_and_stems)
             break
         later, no_later = _ROUNDING, found.depart - max(tried.arrive - latest, _LATER)
     return best
@@ -150,6 +168,11 @@ def passing_time_notes(
         f"{sails} Leaving {start} at {format_time(leave)} she arrives as early after "
         f"{late.distance_nm:.0f} nm: depart then, or permit waits."
     ]
+
+
+def _waits_and_stems(route: Route) -> tuple[bool, int, float]:
+    """Return what is less for the better of routes that arrive as early."""
+    return bool(stemming_warnings(route)), _count(route), _under_way(route)
 
 
 def _count(route: Route) -> int:
