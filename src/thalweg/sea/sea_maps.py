@@ -37,6 +37,8 @@ ARROWS_ALONG_SIDE: Final = 20  #: arrows along the longer side
 TRIAL_TIMES: Final = 25  #: times compared to find the largest values
 SMALLEST_LINE: Final = 500  #: lines smaller than this part of the longer side are not drawn
 TEXT_COLOUR, BACKGROUND_COLOUR, UNKNOWN_COLOUR = "#1f2a37", "#ffffff", "#e3e6ea"
+_UNIFORM = 1e-3  # share by which values differ that count as one
+_AROUND_UNIFORM = 0.1  # of a value, the scale on both sides of it
 
 CoastlinePart = tuple[FloatArray, FloatArray]
 
@@ -246,8 +248,12 @@ def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:
         reach = max(abs(float(low)), abs(float(high)), 0.05)
         return -reach, reach
     starts_at_zero = bool(panel.arrows) or panel.values in (nm.ICE, nm.BED_DEPTH)
-    low = 0.0 if starts_at_zero else float(low)
-    return low, max(float(high), low + 1e-3)
+    low, high = 0.0 if starts_at_zero else float(low), float(high)
+    if high and high - low <= _UNIFORM * abs(
+        high
+    ):  # one value everywhere: a scale round it can be read
+        return low - _AROUND_UNIFORM * abs(high), high + _AROUND_UNIFORM * abs(high)
+    return low, max(high, low + 1e-3)
 
 
 def _draw_arrows(
@@ -270,8 +276,8 @@ def _draw_arrows(
     axis.quiver(
         lon[columns], lat[rows], u[shown], v[shown],
         scale=typical * ARROWS_ALONG_SIDE * 1.25,
-        color=TEXT_COLOUR, alpha=0.8, width=0.0028, headwidth=3.6, headlength=4.2,
-        headaxislength=3.8,
+        color=TEXT_COLOUR, alpha=0.9, width=0.0028, headwidth=3.6, headlength=4.2,
+        headaxislength=3.8, edgecolor="white", linewidth=0.3,
         pivot="middle",
     )  # fmt: skip
 
