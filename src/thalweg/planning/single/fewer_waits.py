@@ -81,7 +81,7 @@ def latest_allowed(context: PlanningContext, route: Route, *, share: float = _LA
     share : Of its time, by which the other one is not later either.
     """
     later = min(_LATER, share * route.time_h * HOUR)
-    if context.voyage.wait and share < math.inf and stemming_warnings(route):
+    if share < math.inf and stemming_warnings(route) and context.voyage.wait:
         later = max(later, min(_LATER_THAN_STEMMING, _SHARE_OF_STEMMING * route.time_h * HOUR))
     return max(min(route.arrive + later, context.latest_arrival), route.arrive)
 
