@@ -10,7 +10,9 @@ import pytest
 
 from thalweg import Sea, Ship, evaluate
 from thalweg.chart.approaches import PORT_APPROACHES
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.cli.main import main
+from thalweg.core.geodesy import densify
 from thalweg.planning.report.approach_report import (
     approach_limit_notes,
     turn_back_notes,
@@ -115,3 +117,14 @@ def test_an_approach_straight_over_land_is_a_danger():
     assert note.startswith("The approach crosses land: that of Launceston, AU has a straight leg")
     assert "17 nm are land" in note and count_of_dangers([note]) == 1
     assert approach_limit_notes(chart, antwerp, {"draught": 3.0}) == []
+
+
+def test_bermuda_is_left_by_the_narrows_and_its_reefs_are_kept_clear_of():
+    """The line led due north from Hamilton, over the town, the reef and North Rock."""
+    reefs = next(area for area in SHOAL_AREAS if area.name == "Bermuda reefs")
+    assert reefs.contains(32.475, -64.767)  # North Rock
+    for label in ("Hamilton, BM", "St George, BM"):
+        line = next(one for one in PORT_APPROACHES.all if one.label == label).line
+        assert line[-1] == (32.372, -64.56)
+        lat, lon, _ = densify(*np.array(line).T, 100.0)
+        assert not reefs.contains(lat, lon).any()

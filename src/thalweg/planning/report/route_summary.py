@@ -155,6 +155,10 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     word = "of it " if route.currency == "USD" else "without "
     paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
     prices = prices_text(route.prices)
+    inside = (route.prices or {}).get("fuel_in_eca_per_t") or {}
+    outside = (route.prices or {}).get("fuel_per_t") or {}
+    if route.fuel_eca_t and outside.get("value") and inside.get("value") == outside["value"]:
+        prices += "; no dearer fuel in control areas, where at most 0.10 % of sulphur is allowed"
     return f"{amount_text(route.cost, route.currency)}{paid}" + (f"; {prices}" if prices else "")
 
 

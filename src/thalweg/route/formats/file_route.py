@@ -96,7 +96,7 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     visits = _waypoints_at(route, vertices)
     given = route.track.extensions.names
     names = [given.get(at, name) if at else name for at, name in zip(visits, names)]
-    rows = [
+    file_rows = [
         {
             "name": name,
             **{k: round(v, digits.get(k, 3)) if type(v) is float else v for k, v in row.items()},
@@ -105,10 +105,14 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
         }
         for name, row, bearing, line in zip(names, rows, bearings, lines)
     ]
-    for row in rows:
-        if row["leg_kind"] == "canal" and "heading_deg" in row:
-            row["heading_deg"] = row["course_deg"]  # samples do not have the bends
-    return FileRoute(rows, vertices.cross_track, visits)
+    for row, sampled in zip(file_rows, rows):
+        if row.get("heading_deg") is None or sampled["course_deg"] is None:
+            continue
+        # legs of the file are not those of the route: the drift is that of the route there
+        drift = sampled["heading_deg"] - sampled["course_deg"]
+        drift = 0.0 if row["leg_kind"] == "canal" else drift  # samples do not have the bends
+        row["heading_deg"] = round((row["course_deg"] + drift) % 360.0, 3)
+    return FileRoute(file_rows, vertices.cross_track, visits)
 
 
 def _waypoints_at(route: Route, vertices: FileVertices) -> list[Visit | None]:

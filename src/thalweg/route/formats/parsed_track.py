@@ -103,7 +103,8 @@ def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
     speed = _first_value(values, SPEEDS, f"ordered speed at waypoint {number}")
     if not (wait is None or 0.0 <= wait <= LONGEST_WAIT) or not (speed is None or speed > 0.0):
         raise InputError(
-            f"Waypoint {number} has a wait of {wait} s and an ordered speed of {speed} m/s.",
+            f"Waypoint {number} waits {(wait or 0.0) / HOUR:g} h"
+            + ("." if speed is None else f", with an ordered speed of {speed / KNOT:g} kn."),
             "Waits are zero or more and a year at most, speeds above zero.",
             "Correct them, or leave them empty.",
             waypoint=number,
@@ -209,9 +210,9 @@ def unused_speed_notes(names: Iterable[str]) -> list[str]:
     -------
     list of str : Empty where no speed is left out.
     """
-    found = list(dict.fromkeys(names))
+    found = dict.fromkeys(names)
     unused = [name for name in found if _is_speed(name)]
-    if not unused or any(name in SPEEDS for name in found):
+    if not unused or not found.keys().isdisjoint(SPEEDS):
         return []
     return [
         f"{' and '.join(unused)} {'is' if len(unused) == 1 else 'are'} not used: the ship sails at "
@@ -312,9 +313,8 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
     InputError : For fewer than two different positions, or without any departure.
     """
     if len(set(parsed.positions)) < 2:
-        count = len(parsed.positions)
         raise InputError(
-            f"The route file {name!r} holds {count} waypoint{'s' * (count != 1)}.",
+            f"The route file {name!r} holds {len(parsed.positions)} waypoint(s).",
             "A route has at least two different ones.",
             "Give a file with the whole route.",
             file=name,
@@ -328,9 +328,9 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
             file=name,
             field="depart",
         )
-    start = parsed.first_time if depart is None else parse_time(depart)
     for note in parsed.all_notes(name):
         warnings.warn(ThalwegWarning(f"{name}: {note}."), stacklevel=3)
+    start = parsed.first_time if depart is None else parse_time(depart)
     return _track(_with_geodesics(parsed), start)  # type: ignore[arg-type]
 
 
