@@ -55,8 +55,7 @@ class ParsedTrack:
 
     def all_notes(self, name: str) -> list[str]:
         """Return the notes of a file of a name."""
-        stem = PurePath(name).stem
-        if self.route_name is None or self.route_name.casefold() == stem.casefold():
+        if (self.route_name or "").casefold() in ("", PurePath(name).stem.casefold()):
             return self.notes
         return [*self.notes, f"its route is named {self.route_name!r}, not as the file"]
 
@@ -211,8 +210,8 @@ def unused_speed_notes(names: Iterable[str]) -> list[str]:
     list of str : Empty where no speed is left out.
     """
     found = dict.fromkeys(names)
-    unused = [name for name in found if _is_speed(name)]
-    if not unused or not found.keys().isdisjoint(SPEEDS):
+    unused = [] if found.keys() & SPEEDS else [name for name in found if _is_speed(name)]
+    if not unused:
         return []
     return [
         f"{' and '.join(unused)} {'is' if len(unused) == 1 else 'are'} not used: the ship sails at "
@@ -312,9 +311,10 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
     ------
     InputError : For fewer than two different positions, or without any departure.
     """
+    count = len(parsed.positions)
     if len(set(parsed.positions)) < 2:
         raise InputError(
-            f"The route file {name!r} holds {len(parsed.positions)} waypoint(s).",
+            f"The route file {name!r} holds {count} waypoint{'s' * (count != 1)}.",
             "A route has at least two different ones.",
             "Give a file with the whole route.",
             file=name,
