@@ -12,7 +12,7 @@ from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.time import format_time
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import KNOT
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.approach_report import turn_back_notes_of_route
@@ -25,6 +25,7 @@ from thalweg.planning.report.squat_report import squat_notes
 from thalweg.planning.report.unread_weather import unread_weather_notes
 from thalweg.planning.report.waiting_report import (
     heavy_weather_warnings,
+    hours_and_slowest,
     stemming_warnings,
     waiting_notes,
     waiting_weather_warnings,
@@ -88,12 +89,9 @@ def slow_speed_warnings(route: Route) -> list[str]:
     """Return a warning where wind and waves leave little of the ordered speed through water."""
     ordered = np.asarray(route.legs["ordered_speed"], float)[route.samples["leg"]]
     made = np.asarray(route.samples["speed_through_water"], float)
-    time = np.asarray(route.samples["time"], float)
-    slow = np.flatnonzero(made[:-1] < _LEAST_KEPT * ordered[:-1])
-    hours = float(np.sum(np.diff(time)[slow])) / HOUR
+    hours, k = hours_and_slowest(route, made, made[:-1] < _LEAST_KEPT * ordered[:-1])
     if hours < _SHORTEST_SLOW:
         return []
-    k = int(slow[np.argmin(made[slow])])
     place = format_position(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
     return [
         f"The ship makes less than a quarter of the ordered speed for {hours:.1f} h, down "

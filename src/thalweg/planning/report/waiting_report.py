@@ -161,18 +161,36 @@ def stemming_warnings(route: Route) -> list[str]:
     """Return a warning where the ship makes hardly any way over ground against a current."""
     made = np.asarray(route.samples["speed_over_ground"], float)
     time = np.asarray(route.samples["time"], float)
-    under_way = np.diff(time) > 0.0
-    slow = np.flatnonzero((made[:-1] < _LEAST_OVER_GROUND) & under_way)
-    hours = float(np.sum(np.diff(time)[slow])) / HOUR
+    hours, k = hours_and_slowest(
+        route, made, (made[:-1] < _LEAST_OVER_GROUND) & (np.diff(time) > 0)
+    )
     if not hours >= _SHORTEST_STEMMING:
         return []
-    k = int(slow[np.argmin(made[slow])])
     place = format_position_minutes(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
     return [
         f"{STEMS}: less than 1 kn over ground for {duration_text(hours * HOUR)}, down to "
         f"{made[k] / KNOT:.1f} kn at {place} on {utc_text(float(time[k]))}. Little is left to keep "
         "clear of dangers: see whether a later departure arrives as early."
     ]
+
+
+def hours_and_slowest(route: Route, made: FloatArray, slow: BoolArray) -> tuple[float, int]:
+    """Return for how long a ship is slow [h], and the number of the sample where she is slowest.
+
+    Parameters
+    ----------
+    made : Speed at each sample [m/s].
+    slow : Whether she is slow from each sample, but the last, to the next one.
+
+    Returns
+    -------
+    float, int : 0 and -1 where she never is.
+    """
+    at = np.flatnonzero(slow)
+    if not len(at):
+        return 0.0, -1
+    hours = float(np.sum(np.diff(np.asarray(route.samples["time"], float))[at])) / HOUR
+    return hours, int(at[np.argmin(made[at])])
 
 
 def window_notes(
