@@ -436,6 +436,7 @@ def test_a_row_whose_route_exceeds_a_limit_has_no_route():
     assert has_route({"refusal": None, "feasible": True})
     assert has_route({"refusal": None})  # of a front, whose row has no such entry
     assert not has_route({"refusal": None, "feasible": False})
+    assert not has_route({"refusal": None, "feasible": np.False_})
     assert not has_route({"refusal": "NoRouteError", "reason": "..."})
 
 

@@ -281,7 +281,7 @@ def _way_over_seas(
         too_deep = seas.closed_names - every.closed_names
         shut = closed_to_draught_notes(seas, too_deep, ends, way, draught=draught, offing=offing)
         length = way.length - sum(approach.length for approach in way.approaches)
-        notes += shut + shoal_detour_notes(seas, way.ends, length, offing=offing)
+        notes += shut + shoal_detour_notes(seas, way.ends, offing=offing, length=length)
         if "air_draught" in sizes:
             notes += closed_to_size_notes(seas, sizes, ends, way, offing=offing)
     notes += seas.near_land_notes(way.at_sea, way.ends, offing=offing)

@@ -38,7 +38,7 @@ TRIAL_TIMES: Final = 25  #: times compared to find the largest values
 SMALLEST_LINE: Final = 500  #: lines smaller than this part of the longer side are not drawn
 TEXT_COLOUR, BACKGROUND_COLOUR, UNKNOWN_COLOUR = "#1f2a37", "#ffffff", "#e3e6ea"
 _UNIFORM = 1e-3  # share by which values differ that count as one
-_AROUND_UNIFORM = 0.1  # of a value, the scale on both sides of it
+_AROUND_UNIFORM = 0.1  # of one value everywhere, so that the scale round it can be read
 
 CoastlinePart = tuple[FloatArray, FloatArray]
 
@@ -249,9 +249,7 @@ def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:
         return -reach, reach
     starts_at_zero = bool(panel.arrows) or panel.values in (nm.ICE, nm.BED_DEPTH)
     low, high = 0.0 if starts_at_zero else float(low), float(high)
-    if high and high - low <= _UNIFORM * abs(
-        high
-    ):  # one value everywhere: a scale round it can be read
+    if high and high - low <= _UNIFORM * abs(high):
         return low - _AROUND_UNIFORM * abs(high), high + _AROUND_UNIFORM * abs(high)
     return low, max(high, low + 1e-3)
 

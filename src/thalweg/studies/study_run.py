@@ -178,7 +178,8 @@ def _run_missing(
 
 def has_route(result: Mapping[str, Any]) -> bool:
     """Return whether a row has a route that keeps the limits."""
-    return result["refusal"] is None and result.get("feasible") is not False
+    feasible = result.get("feasible")
+    return result["refusal"] is None and (feasible is None or bool(feasible))
 
 
 def _check_single_ship(study: Study, rows: list[StudyRow]) -> None:

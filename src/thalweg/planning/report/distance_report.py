@@ -49,7 +49,7 @@ def shoal_notes(seas: Seaways, path: Sequence[Position], draught: float | None) 
 
 
 def shoal_detour_notes(
-    seas: Seaways, ends: Sequence[Endpoint], length: float, *, offing: float
+    seas: Seaways, ends: Sequence[Endpoint], *, offing: float, length: float | None = None
 ) -> tuple[str, ...]:
     """Return how much longer shoals make a way, as a note.
 
@@ -57,39 +57,47 @@ def shoal_detour_notes(
     ----------
     seas : With the shoals; without shoals there is no note.
     ends : Of the way, with via points between them.
-    length : Of the way without approaches [m].
-    offing : Distance from land that the shorter way keeps [m].
+    offing : Distance from land that ways keep [m].
+    length : Of the way without approaches [m]; by default of the shortest one round the shoals.
+
+    Raises
+    ------
+    InputError : If an end is on land on the chart of all seas.
     """
     if seas.shoals is None:
         return ()
     over = replace(seas, shoals=None)
     legs = list(pairwise(ends))
 
-    def saved(ways: Iterable[list[Position]]) -> float:
-        """Return what ways are shorter [m], 0 where it is no clear difference."""
-        longer = length - sum(path_length_and_canals(seas.chart, way)[0] for way in ways)
-        return longer if longer > clear_difference(length) else 0.0
+    def length_of(ways: Iterable[list[Position]]) -> float:
+        return sum(path_length_and_canals(seas.chart, way)[0] for way in ways)
 
     try:
-        if not saved(over.graph_path(*leg) for leg in legs):
+        on_graph = length_of(over.graph_path(*leg) for leg in legs)
+        known = length
+        if known is None:  # ways to the offing take longer to find than those over the graph
+            known = length_of(seas.graph_path(*leg) for leg in legs)
+        if known - on_graph <= _clear_difference(known):
             return ()
+        if length is None:
+            length = length_of(seas.path(*leg, offing=offing) for leg in legs)
         ways = [over.path(*leg, offing=offing) for leg in legs]
     except NoRouteError:
         return ()
-    longer = saved(ways) / NAUTICAL_MILE
-    if longer < 1.0:
+    longer = length - length_of(ways)
+    if longer <= _clear_difference(length) or longer < NAUTICAL_MILE:
         return ()
     lat, lon = np.array([place for way in ways for place in way], float).T
     names = names_passed(seas.chart.coastline, seas.chart.passages, lat, lon)
     by = f", by {', '.join(dict.fromkeys(names))}" if names else ""
     return (
         f"{SHOAL_DETOUR} by the {NAME}, which is coarse: the shortest way for this draught is "
-        f"{longer:.0f} nm shorter, over that water{by}. See the chart; to compare, plan with "
-        "--ignore-shoals.",
+        f"{longer / NAUTICAL_MILE:.0f} nm shorter, over that water{by}. See the chart; to compare, "
+        "plan with --ignore-shoals.",
     )
 
 
-def clear_difference(length: float) -> float:
+def _clear_difference(length: float) -> float:
     """Return how much shorter than a way [m] another one is that a note is on [m]."""
     return min(_CLEARLY_LONGER * length, _MANY_MILES)
 

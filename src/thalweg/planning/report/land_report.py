@@ -25,7 +25,7 @@ from thalweg.planning.report.closed_way_report import (
     ways_of_names,
     ways_on_line,
 )
-from thalweg.planning.report.distance_report import clear_difference, shoal_detour_notes
+from thalweg.planning.report.distance_report import shoal_detour_notes
 from thalweg.planning.request.chart_restrictions import canal_restriction, excluded_canal_note
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -211,15 +211,9 @@ def shoal_detour_notes_of_plan(context: PlanningContext, route: Route) -> list[s
     ends = [Endpoint("", float(lat[k]), float(lon[k]), 0.0) for k in (at_sea[0], at_sea[-1] + 1)]
     seas = replace(Seaways.of_ship_chart(chart), shoals=shoals)
     try:
-        ways = (replace(seas, shoals=None).graph_path(*ends), seas.graph_path(*ends))
-        over, round_shoals = (path_length_and_canals(seas.chart, way)[0] for way in ways)
-        if round_shoals - over < clear_difference(round_shoals):
-            return []
-        way = seas.path(*ends, offing=chart.offing.distance)
-    except (InputError, NoRouteError):  # an end that the chart of all seas has on land
+        return list(shoal_detour_notes(seas, ends, offing=chart.offing.distance))
+    except InputError:  # an end that the chart of all seas has on land
         return []
-    length = path_length_and_canals(seas.chart, way)[0]
-    return list(shoal_detour_notes(seas, ends, length, offing=chart.offing.distance))
 
 
 def saved_length(route: Route, way: NarrowWay) -> float:

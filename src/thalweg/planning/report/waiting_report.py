@@ -161,10 +161,9 @@ def stemming_warnings(route: Route) -> list[str]:
     """Return a warning where the ship makes hardly any way over ground against a current."""
     made = np.asarray(route.samples["speed_over_ground"], float)
     time = np.asarray(route.samples["time"], float)
-    hours, k = hours_and_slowest(
-        route, made, (made[:-1] < _LEAST_OVER_GROUND) & (np.diff(time) > 0)
-    )
-    if not hours >= _SHORTEST_STEMMING:
+    slow = (made[:-1] < _LEAST_OVER_GROUND) & (np.diff(time) > 0.0)
+    hours, k = hours_and_slowest(route, made, slow)
+    if hours < _SHORTEST_STEMMING:
         return []
     place = format_position_minutes(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
     return [

@@ -22,6 +22,7 @@ from thalweg.ship import Ship
 _DEFAULT_OFFINGS: Final = ((0.5, 50.0, 4.0), (1.0, 120.0, 7.0))
 _LARGE_SHIP_OFFING: Final = 2.0  # [nm]
 _DISC_RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (3.0, 5.0, 10.0, 40.0))
+_RIVER_RADII: Final = _DISC_RADII[-2:]
 #: Distances from land that are tried inside a disc with a radius, the widest first [m].
 _LEAST_OF_DISCS: Final = tuple(share * NAUTICAL_MILE for share in (0.5, 0.25, 0.1, 0.05))
 _LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE
@@ -142,7 +143,7 @@ def _discs_of_end(
         return [at_end]
     if in_river:
         least = min(0.9 * shore, _RIVER_OFFING)
-        river = [OffingDisc(*place, least, radius) for radius in _DISC_RADII]
+        river = [OffingDisc(*place, least, radius) for radius in _RIVER_RADII]
         return [next((disc for disc in river if _joins(chart, [disc], offing)), river[-1])]
     for radius in _DISC_RADII:
         if _joins(chart, [OffingDisc(*place, 0.0, radius)], offing):

@@ -111,7 +111,7 @@ def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
         # legs of the file are not those of the route: the drift is that of the route there
         drift = sampled["heading_deg"] - sampled["course_deg"]
         drift = 0.0 if row["leg_kind"] == "canal" else drift  # samples do not have the bends
-        row["heading_deg"] = round((row["course_deg"] + drift) % 360.0, 3)
+        row["heading_deg"] = round(row["course_deg"] + drift, 3) % 360.0
     return FileRoute(file_rows, vertices.cross_track, visits)
 
 
