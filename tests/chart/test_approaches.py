@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
+from thalweg.chart.approach_choices import line_between
 from thalweg.chart.approaches import (
     LONGEST_JOINT,
     ON_LINE,
     PORT_APPROACHES,
     dense_line,
-    line_between,
 )
 from thalweg.chart.ports import PORTS
 from thalweg.core.geodesy import distance, line_length, positions_along

@@ -15,9 +15,11 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.chart.approach_branches import ApproachBranch, approach_branches
 from thalweg.chart.approaches import (
+    JOINT_SPACING,
     LONGEST_JOINT,
     PortApproach,
     dense_line,
@@ -27,7 +29,7 @@ from thalweg.chart.canal_parts import ways_through_canals
 from thalweg.chart.canals import Canal
 from thalweg.chart.coast.coastline import Coastline
 from thalweg.chart.passages import Passage
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -37,6 +39,9 @@ _CANAL_REACH = 2.0 * NAUTICAL_MILE  # between an approach and the end of a canal
 LEAST_OFF_LAND: Final = 0.5 * NAUTICAL_MILE
 _LEAST_BEYOND = 3.0 * NAUTICAL_MILE  # of the line beyond the first such place
 _LEAST_LEFT_OUT = 1_000.0  # of the main line by leaving it, or the way is not one of its own [m]
+_SAME_WATER: Final = 0.15 * NAUTICAL_MILE  # lines so close are joined without a test
+_BLOCK: Final = 10  # places of dense lines that are first tested by one of them
+_JOINTS_AT_ONCE: Final = 200  # joints tested against land at once
 
 
 def approach_choices(
@@ -141,3 +146,67 @@ def _is_main(approach: PortApproach, branch: ApproachBranch, length: float) -> b
     """Return whether a way of a length [m] by a branch is no other than the approach itself."""
     same_end = float(distance(*approach.sea_end, *branch.line[-1])) < _LEAST_LEFT_OUT
     return same_end and length > approach.length - _LEAST_LEFT_OUT
+
+
+def line_between(
+    start: PortApproach, goal: PortApproach, *, legs_blocked: object
+) -> tuple[Position, ...] | None:
+    """Return the line from one berth to another along their approaches, where these meet.
+
+    Parameters
+    ----------
+    legs_blocked : Test of legs, as of `thalweg.chart.Chart`.
+
+    Returns
+    -------
+    tuple of (lat, lon), or None : None where the two approaches do not meet before the open sea.
+    """
+    if _far_apart(start.line, goal.line):
+        return None
+    i, j, apart = _close_pairs(first := dense_line(start.line), second := dense_line(goal.line))
+    order = np.argsort(first[i, 2] + apart + second[j, 2], kind="stable")
+    for some in np.array_split(order, len(order) // _JOINTS_AT_ONCE + 1):
+        far = apart[some] > _SAME_WATER
+        free = ~far
+        free[far] = ~legs_blocked(  # type: ignore[operator]
+            *first[i[some[far]], :2].T, *second[j[some[far]], :2].T
+        )
+        if free.any():
+            best = some[np.argmax(free)]
+            end = line_part(goal.line, second[j[best], 2])[::-1]
+            line = [*line_part(start.line, first[i[best], 2]), *end]
+            return tuple(
+                a for k, a in enumerate(line) if k == 0 or float(distance(*a, *line[k - 1])) > 1.0
+            )
+    return None
+
+
+def _close_pairs(
+    first: FloatArray, second: FloatArray
+) -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
+    """Return the pairs of places of two dense lines that a joint can join, and how far apart [m].
+
+    Every tenth place is tested first: lines of rivers are long.
+    """
+    reach = LONGEST_JOINT + 2.0 * _BLOCK * JOINT_SPACING
+    rough = _metres_apart(first[::_BLOCK, None], second[None, ::_BLOCK])
+    blocks = _BLOCK * np.argwhere(rough <= reach)
+    i, j = np.moveaxis(blocks[:, None, :] + np.argwhere(np.ones((_BLOCK, _BLOCK))), -1, 0)
+    inside = (i < len(first)) & (j < len(second))
+    i, j = i[inside], j[inside]
+    apart = _metres_apart(first[i], second[j])
+    close = apart <= LONGEST_JOINT
+    return i[close], j[close], apart[close]
+
+
+def _metres_apart(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return distances [m] of places (lat, lon, ...) [deg] near each other."""
+    east = longitude_difference(a[..., 1], b[..., 1]) * np.cos(np.radians(a[..., 0]))
+    return np.asarray(np.hypot(a[..., 0] - b[..., 0], east) * METRES_PER_DEGREE)
+
+
+def _far_apart(first: tuple[Position, ...], second: tuple[Position, ...]) -> bool:
+    """Return whether the latitudes of two lines are farther apart than any joint."""
+    a, b = ([place[0] for place in line] for line in (first, second))
+    gap = max(min(a) - max(b), min(b) - max(a))
+    return gap * METRES_PER_DEGREE > 1.01 * LONGEST_JOINT

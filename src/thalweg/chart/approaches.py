@@ -42,13 +42,9 @@ ON_LINE: Final = 100.0  #: a position within this distance of a line is on it [m
 _CELL: Final = 0.25  # side of the cells by which segments are found [deg]
 _TURN: Final = round(360.0 / _CELL)
 _LENGTH_TOLERANCE: Final = 0.02  # of a leg that follows a line, relative
-#: Two lines are joined where they are this close [m] ...
-_SAME_WATER: Final = 0.15 * NAUTICAL_MILE
-#: ... or this close with only water between them.
+#: Lines are joined where they are this close with only water between them [m].
 LONGEST_JOINT: Final = 1.0 * NAUTICAL_MILE
-_JOINT_SPACING: Final = 0.1 * NAUTICAL_MILE
-_BLOCK: Final = 10  # places of dense lines that are first tested by one of them
-_JOINTS_AT_ONCE: Final = 200  # joints tested against land at once
+JOINT_SPACING: Final = 0.1 * NAUTICAL_MILE  #: of the places of dense lines [m]
 
 
 @dataclass(frozen=True)
@@ -184,20 +180,44 @@ class PortApproaches:
         """Return whether a position [deg] is within `ON_LINE` of the line of any approach."""
         return bool(self._lines_at(lat, lon))
 
+    def lines_near(
+        self, lat: float, lon: float, *, within: float
+    ) -> list[tuple[PortApproach, float, float]]:
+        """Return the approaches that pass a position, and how far along each and how far off.
+
+        Parameters
+        ----------
+        lat, lon : Position [deg].
+        within : Greatest distance from the line [m].
+
+        Returns
+        -------
+        list of (approach, metres from the berth, metres from the position)
+        """
+        near = np.flatnonzero(np.abs(self._segments[0] - lat) < 1.0)  # no leg is that long
+        found = self._nearest_places(lat, lon, near, within)
+        return [(self.all[k], *place) for k, place in found.items() if k < len(self.all)]
+
     def _lines_at(self, lat: float, lon: float) -> dict[int, float]:
         """Return the lines on which a position lies, and how far along each [m]."""
         near = self._segments_by_cell.get(_cell(lat, lon))
-        if near is None:
-            return {}
-        a_lat, a_lon, b_lat, b_lon, start, line = (column[near] for column in self._segments)
+        found = {} if near is None else self._nearest_places(lat, lon, near, ON_LINE)
+        return {line: along for line, (along, _apart) in found.items()}
+
+    def _nearest_places(
+        self, lat: float, lon: float, segments: NDArray[np.int64], within: float
+    ) -> dict[int, tuple[float, float]]:
+        """Return the nearest place on each line: how far along it and how far off [m]."""
+        a_lat, a_lon, b_lat, b_lon, start, line = (column[segments] for column in self._segments)
         scale = np.cos(np.radians(lat))
         bx, by = longitude_difference(b_lon, a_lon) * scale, b_lat - a_lat
         px, py = longitude_difference(lon, a_lon) * scale, lat - a_lat
         share = np.clip((px * bx + py * by) / np.maximum(bx**2 + by**2, 1e-18), 0.0, 1.0)
         apart = np.hypot(px - share * bx, py - share * by) * METRES_PER_DEGREE
         along = start + share * np.hypot(bx, by) * METRES_PER_DEGREE
-        on = np.flatnonzero(apart <= ON_LINE)
-        return {int(line[k]): float(along[k]) for k in on}
+        on = np.flatnonzero(apart <= within)
+        far_to_near = on[np.argsort(-apart[on], kind="stable")]
+        return {int(line[k]): (float(along[k]), float(apart[k])) for k in far_to_near}
 
     @cached_property
     def _segments(self) -> tuple[FloatArray, ...]:
@@ -262,68 +282,6 @@ class PortApproaches:
         return {port: row for port, row in named if port is not None}
 
 
-def line_between(
-    start: PortApproach, goal: PortApproach, *, legs_blocked: object
-) -> tuple[Position, ...] | None:
-    """Return the line from one berth to another along their approaches, where these meet.
-
-    Parameters
-    ----------
-    legs_blocked : Test of legs, as of `thalweg.chart.Chart`.
-
-    Returns
-    -------
-    tuple of (lat, lon), or None : None where the two approaches do not meet before the open sea.
-    """
-    if _far_apart(start.line, goal.line):
-        return None
-    i, j, apart = _close_pairs(first := dense_line(start.line), second := dense_line(goal.line))
-    order = np.argsort(first[i, 2] + apart + second[j, 2], kind="stable")
-    for some in np.array_split(order, len(order) // _JOINTS_AT_ONCE + 1):
-        far = apart[some] > _SAME_WATER
-        free = ~far
-        free[far] = ~legs_blocked(  # type: ignore[operator]
-            *first[i[some[far]], :2].T, *second[j[some[far]], :2].T
-        )
-        if free.any():
-            best = some[np.argmax(free)]
-            end = line_part(goal.line, second[j[best], 2])[::-1]
-            line = [*line_part(start.line, first[i[best], 2]), *end]
-            return tuple(a for k, a in enumerate(line) if k == 0 or _metres(a, line[k - 1]) > 1.0)
-    return None
-
-
-def _close_pairs(
-    first: FloatArray, second: FloatArray
-) -> tuple[NDArray[np.int64], NDArray[np.int64], FloatArray]:
-    """Return the pairs of places of two dense lines that a joint can join, and how far apart [m].
-
-    Every tenth place is tested first: lines of rivers are long.
-    """
-    reach = LONGEST_JOINT + 2.0 * _BLOCK * _JOINT_SPACING
-    rough = _metres_apart(first[::_BLOCK, None], second[None, ::_BLOCK])
-    blocks = _BLOCK * np.argwhere(rough <= reach)
-    i, j = np.moveaxis(blocks[:, None, :] + np.argwhere(np.ones((_BLOCK, _BLOCK))), -1, 0)
-    inside = (i < len(first)) & (j < len(second))
-    i, j = i[inside], j[inside]
-    apart = _metres_apart(first[i], second[j])
-    close = apart <= LONGEST_JOINT
-    return i[close], j[close], apart[close]
-
-
-def _metres_apart(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return distances [m] of places (lat, lon, ...) [deg] near each other."""
-    east = longitude_difference(a[..., 1], b[..., 1]) * np.cos(np.radians(a[..., 0]))
-    return np.asarray(np.hypot(a[..., 0] - b[..., 0], east) * METRES_PER_DEGREE)
-
-
-def _far_apart(first: tuple[Position, ...], second: tuple[Position, ...]) -> bool:
-    """Return whether the latitudes of two lines are farther apart than any joint."""
-    a, b = ([place[0] for place in line] for line in (first, second))
-    gap = max(min(a) - max(b), min(b) - max(a))
-    return gap * METRES_PER_DEGREE > 1.01 * LONGEST_JOINT
-
-
 def line_part(line: tuple[Position, ...], along: float) -> list[Position]:
     """Return the vertices of a line up to a distance [m] from its start, and the place there."""
     part, sailed = [line[0]], 0.0
@@ -356,12 +314,12 @@ def place_along_line(line: tuple[Position, ...], place: Position) -> float | Non
 
 
 def dense_line(line: tuple[Position, ...]) -> FloatArray:
-    """Return rows (lat, lon [deg], distance from the first [m]) at most `_JOINT_SPACING` apart."""
+    """Return rows (lat, lon [deg], distance from the first [m]) at most `JOINT_SPACING` apart."""
     rows, sailed = [(*line[0], 0.0)], 0.0
     for a, b in itertools.pairwise(line):
         length = _metres(a, b)
         turn = longitude_difference(b[1], a[1])
-        for share in np.linspace(0.0, 1.0, int(length / _JOINT_SPACING) + 2)[1:]:
+        for share in np.linspace(0.0, 1.0, int(length / JOINT_SPACING) + 2)[1:]:
             place = (a[0] + share * (b[0] - a[0]), a[1] + share * turn, sailed + share * length)
             rows.append(place)
         sailed += length

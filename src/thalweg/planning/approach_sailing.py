@@ -9,9 +9,9 @@ from functools import cache, partial
 
 import numpy as np
 
+from thalweg.chart.approach_choices import line_between
 from thalweg.chart.approaches import (
     PortApproach,
-    line_between,
 )
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance, line_length

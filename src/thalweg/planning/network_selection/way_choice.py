@@ -11,7 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.chart.approaches import PortApproach, line_between
+from thalweg.chart.approach_choices import line_between
+from thalweg.chart.approaches import PortApproach
 from thalweg.chart.canals import CANALS
 from thalweg.chart.port_limits.bridges import bridges_over
 from thalweg.core.errors import NoRouteError

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from thalweg.chart.approaches import PortApproach, line_between
+from thalweg.chart.approach_choices import line_between
+from thalweg.chart.approaches import PortApproach
 from thalweg.core.geodesy import Position, line_length
 from thalweg.planning.network_selection.way_choice import with_chosen_ways
 from thalweg.planning.request.voyage_endpoints import Endpoint

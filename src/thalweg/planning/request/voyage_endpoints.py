@@ -19,6 +19,7 @@ from thalweg.core.geodesy import (
     parse_position,
 )
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.joined_approach import joined_approach
 from thalweg.planning.request.swapped_degrees import (
     NEAR_PORT,
     check_order_of_degrees,
@@ -274,10 +275,44 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         others.remove(place)
         with errors_about(entry), errors_on_swapped_degrees(place, others, chart):
             ends.append(resolve_endpoint(place, chart, what))
+    ends[0], ends[-1] = (along_approach(end, chart) for end in (ends[0], ends[-1]))
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)
     return ends
+
+
+def along_approach(end: Endpoint, chart: Chart) -> Endpoint:
+    """Return the end of a voyage at a position in a harbour by the approach that passes it."""
+    if end.is_port:
+        return end
+    approach = joined_approach(end.lat, end.lon, chart)
+    if approach is None:
+        return end
+    ways = [
+        way
+        for way in approach_choices(approach, chart.canals, chart.passages)
+        if _is_usable(way, chart)
+    ]
+    if not ways:
+        return end
+    place = "beside"
+    if end.given_position is not None:
+        miles = end.moved_distance_m / NAUTICAL_MILE
+        moved = f"moved {miles:.1f} nm to {format_position(end.lat, end.lon)}"
+        place = f"{end.why}: {moved}, beside"
+    notice = f"{end.name} is {place} the approach of {approach.port.label}, which the ship follows."
+    return replace(
+        end,
+        lat=ways[0].sea_end[0],
+        lon=ways[0].sea_end[1],
+        moved_distance_m=0.0,
+        given_position=None,
+        approach=ways[0],
+        other_ways=tuple(ways[1:]),
+        may_leave_early=may_leave_early(ways[0], chart.coastline),
+        notice=" ".join(text for text in (end.notice, notice) if text),
+    )
 
 
 def without_approach(end: Endpoint) -> Endpoint:

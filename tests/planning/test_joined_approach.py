@@ -1,0 +1,71 @@
+"""Positions in harbours: the ship follows the approach that passes her."""
+
+import numpy as np
+import pytest
+
+from thalweg.chart.ports import PORTS
+from thalweg.core.geodesy import distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.joined_approach import joined_approach
+from thalweg.planning.request.voyage_endpoints import resolve_places
+from thalweg.planning.sea_distance import sea_distance, world_chart
+
+ROADS_OF_PRINCE_RUPERT = 54.312, -130.34
+
+
+@pytest.fixture(scope="module")
+def world():
+    return world_chart()
+
+
+def test_a_ship_in_a_harbour_joins_the_line_of_its_port(world):
+    approach = joined_approach(*ROADS_OF_PRINCE_RUPERT, world)
+    of_port = world.approaches.of(PORTS.lookup("Prince Rupert"))
+    assert approach.line[0] == ROADS_OF_PRINCE_RUPERT
+    assert approach.sea_end == of_port.sea_end
+    assert set(approach.line[2:]) <= set(of_port.line)
+    assert not world.legs_blocked(*approach.line[0], *approach.line[1])
+    assert approach.length < of_port.length + 1.0 * NAUTICAL_MILE
+
+
+def test_a_deep_ship_at_fisherman_islands_leaves_by_the_main_channel_of_brisbane():
+    found = sea_distance((-27.385, 153.165), "Sydney", draught_m=14.0)
+    by_name = sea_distance("Brisbane", "Sydney", draught_m=14.0)
+    assert found.approaches[0][0] == "Brisbane, AU"
+    assert 0.0 < by_name.nm - found.nm < 10.0
+    assert any("beside the approach of Brisbane" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "place", [(54.0, -133.0), (54.30, -130.90), (40.0, -60.0)], ids=["Hecate", "end", "ocean"]
+)
+def test_a_ship_at_sea_joins_no_line(world, place):
+    assert joined_approach(*place, world) is None
+
+
+def test_lines_near_a_position_are_measured_from_the_berth(world):
+    near = [
+        one
+        for one in world.approaches.lines_near(*ROADS_OF_PRINCE_RUPERT, within=2 * NAUTICAL_MILE)
+        if one[0].port.name == "Prince Rupert"
+    ]
+    assert len(near) == 1
+    approach, along, apart = near[0]
+    lat, lon = np.array(approach.line).T
+    assert apart <= float(distance(*ROADS_OF_PRINCE_RUPERT, lat, lon).min()) + 1.0
+    assert 0.0 <= along <= approach.length + 1.0
+
+
+def test_only_the_ends_of_a_voyage_join_lines(world):
+    ends = resolve_places("Sydney", [ROADS_OF_PRINCE_RUPERT], ROADS_OF_PRINCE_RUPERT, world)
+    assert (ends[1].lat, ends[1].lon) == ROADS_OF_PRINCE_RUPERT
+    assert ends[1].approach is None
+    assert ends[2].approach is not None
+    assert not ends[2].is_port
+
+
+def test_a_position_on_land_is_moved_and_joins(world):
+    end = resolve_places((54.31, -130.34), [], "Sydney", world)[0]
+    assert end.approach.port.label == "Prince Rupert, CA"
+    assert "moved 0.1 nm" in end.notice
+    assert end.name == "54.3100N 130.3400W"
