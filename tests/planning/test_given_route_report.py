@@ -173,3 +173,12 @@ def test_waypoints_with_the_name_of_a_port_elsewhere_are_questioned():
         "Check the position of the waypoint 'Kiel', 10.2000N 54.4000E: with latitude and longitude "
         "swapped it would be at Kiel, DE.",
     ]
+
+
+def test_a_waypoint_at_which_a_route_turns_round_is_stated(chart):
+    notes = notes_of([(45.0, -30.0), (46.0, -30.0), (45.4, -30.02), (47.0, -30.0)], chart)
+    (note,) = [note for note in notes if note.startswith("Turns round")]
+    assert "degrees at waypoint 2, 46.0000N 30.0000W" in note
+    assert "So it does at 2 waypoints" in note
+    zigzag = notes_of([(45.0, -30.0), (46.0, -30.0), (46.1, -29.0), (45.2, -28.0)], chart)
+    assert not any(note.startswith("Turns round") for note in zigzag)

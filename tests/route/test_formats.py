@@ -1,6 +1,7 @@
 """Routes through files and back, and files that cannot be routes."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.route.planar import ship
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.time import parse_time
 from thalweg.core.units import KNOT
 from thalweg.route import (
@@ -361,3 +362,45 @@ def test_a_speed_column_that_is_not_used_is_named(tmp_path, recwarn, header, nam
     if named:
         assert f"route.csv: its column {named} is not used" in said[0]
         assert "ordered_speed_kn" in said[0]
+
+
+@pytest.mark.parametrize(("header", "named"), [("wait", "wait"), ("waiting_h", None)])
+def test_a_column_of_waits_that_is_not_used_is_named(tmp_path, recwarn, header, named):
+    path = tmp_path / "route.csv"
+    path.write_text(f"lat,lon,time,{header}\n51,2,2026-01-01T00:00Z,2\n52,3,,\n")
+    track = read_track(path)
+    said = [str(one.message) for one in recwarn if "not used" in str(one.message)]
+    assert len(said) == (named is not None)
+    assert track.wait[0] == (0.0 if named else 7200.0)
+    assert all("its column wait is not used" in text and "waiting_h" in text for text in said)
+
+
+@pytest.mark.parametrize(
+    ("row", "named"),
+    [
+        ("51 30.0N,003 35.0", "longitude of waypoint 1 is '003 35.0'"),
+        ("51 30.0,003 35.0E", "latitude of waypoint 1 is '51 30.0'"),
+        ("51.5,", "longitude of waypoint 1 is ''"),
+        ("51 30.0N,", "longitude of waypoint 1 is ''"),
+    ],
+)
+def test_the_coordinate_that_is_wrong_is_named(tmp_path, row, named):
+    path = tmp_path / "route.csv"
+    path.write_text(f"lat,lon\n{row}\n52,3\n")
+    with pytest.raises(InputError, match=re.escape(named)):
+        read_track(path, depart="2026-01-01T00:00Z")
+
+
+def test_repeated_positions_and_further_routes_are_stated(tmp_path):
+    path = tmp_path / "route.gpx"
+    points = '<rtept lat="51" lon="2"/><rtept lat="52" lon="3"/><rtept lat="52" lon="3"/>'
+    other = '<rtept lat="1" lon="2"/><rtept lat="2" lon="3"/>'
+    path.write_text(f"<gpx><rte>{points}</rte><rte>{other}</rte></gpx>")
+    with pytest.warns(ThalwegWarning) as found:
+        track = read_track(path, depart="2026-01-01T00:00Z")
+    assert track.lat.tolist() == [51.0, 52.0]
+    texts = [str(one.message) for one in found]
+    assert any("of its 2 routes or tracks the first is used" in text for text in texts)
+    assert any(
+        "1 of its positions repeat the one before, first waypoint 3" in text for text in texts
+    )

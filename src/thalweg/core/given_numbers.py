@@ -25,6 +25,19 @@ def to_number(value: object) -> float:
         return math.nan
 
 
+def finite_number(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
+    """Return a finite number, or raise `InputError` naming what it should have been."""
+    value = to_number(text)
+    if not math.isfinite(value):
+        raise InputError(
+            f"The {what} is {shortened_repr(text)}, not a number.",
+            "It is a decimal number.",
+            remedy,
+            value=text,
+        )
+    return value
+
+
 def is_number(value: object) -> bool:
     """Return whether a value is a finite number; text and truth values are not."""
     return not isinstance(value, (str, bytes, np.ndarray)) and math.isfinite(to_number(value))

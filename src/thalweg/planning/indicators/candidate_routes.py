@@ -8,7 +8,7 @@ lanes than the fastest route by any canals are left out.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -111,7 +111,19 @@ def _feasible_candidates(
             break
     found = found or [(routes[:1], notes)]
     kept, notes = min(found, key=lambda one: min(route.time_h for route in one[0]))
-    return kept, list(dict.fromkeys((*context.needs.notes, *notes)))
+    return kept, list(dict.fromkeys((*context.needs.notes, *notes, *_longest_notes(context, kept))))
+
+
+def _longest_notes(context: PlanningContext, routes: Sequence[Route]) -> list[str]:
+    """Return a note on how long routes take at most, where the voyage has no time of arrival."""
+    if context.voyage.arrive_by is not None or len(context.ship.speeds) < 2 or len(routes) < 2:
+        return []
+    hours = _LONGER * min(route.time_h for route in routes)
+    return [
+        f"Least fuel and the other figures are of routes of at most {hours:.1f} h at sea, "
+        f"{_LONGER:g} times the fastest (the cheapest may take longer): with more time less fuel "
+        "is possible. Set another limit by the latest arrival (--arrive-by)."
+    ]
 
 
 def candidate_routes(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
@@ -31,11 +32,14 @@ from thalweg.route import Route
 from thalweg.route.carried_extensions import visits_of
 from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import offing_breaches
+from thalweg.route.refinement.track_geometry import course_changes
 from thalweg.route.route_tables import LEG_KINDS
 from thalweg.ship import Ship
 
+TURNS_ROUND: Final = "Turns round"  #: a note on such a waypoint begins so
 NEAR_LAND: Final = "Nearer to land than usual"  #: a note on such legs begins so
 FILE_SPEED: Final = "Not the speed of the route file"  #: a note on legs with limits begins so
+_SHARP: Final = math.radians(150.0)  # alterations of course that no passage plan has at sea
 _SAME_SPEED: Final = 0.05  # differences below this are none [kn]
 _AS_WRITTEN: Final = (
     0.95  # of the usual distance: lines of files are up to 0.1 nm off those of plans
@@ -59,7 +63,7 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     if not chart.passages or len(lat) < 2:
         return []
     notes = misplaced_name_notes(route.track.extensions.names)
-    notes += _near_land(route, chart, ship)
+    notes += _turns_back(route, chart) + _near_land(route, chart, ship)
     in_approach = _in_approach(route, chart)
     legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach)]
     miles = max((most_miles_over_land(chart, lat[k], lon[k]) for k in legs), default=0.0)
@@ -114,6 +118,25 @@ def file_speed_notes(route: Route) -> list[str]:
                 f"{limit[worst]:g} kn).{more} Order another with --speed."
             )
     return notes
+
+
+def _turns_back(route: Route, chart: Chart) -> list[str]:
+    """Return a note on the waypoints at sea where the route turns back on itself."""
+    track = route.track
+    turns = np.abs(course_changes(track.lat, track.lon))
+    in_approach = _in_approach(route, chart)
+    at_sea = ~(in_approach[1:] | in_approach[:-1])
+    which = np.flatnonzero((turns > _SHARP) & at_sea & (track.wait[1:-1] <= 0.0)) + 1
+    if not which.size:
+        return []
+    first = int(which[0])
+    more = f" So it does at {len(which)} waypoints." if len(which) > 1 else ""
+    return [
+        f"{TURNS_ROUND} by {math.degrees(turns[first - 1]):.0f} degrees at waypoint "
+        f"{int(track.leg_numbers[first])}, "
+        f"{format_position(float(track.lat[first]), float(track.lon[first]))}: is a waypoint "
+        f"wrong, repeated or out of order?{more}"
+    ]
 
 
 def _near_land(route: Route, chart: Chart, ship: Ship) -> list[str]:

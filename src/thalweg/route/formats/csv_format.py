@@ -19,7 +19,7 @@ from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     carried_names,
     position_of,
-    unused_speed_notes,
+    unused_column_notes,
     waypoint_track,
 )  # fmt: skip
 from thalweg.route.formats.route_file_options import RouteFileOptions
@@ -75,7 +75,7 @@ def parse_csv(text: str) -> ParsedTrack:
     given = {name: header.index(name) for name in (*WAITS, *SPEEDS, GEOMETRY) if name in header}
     values = [{name: _cell_of(row, k) for name, k in given.items()} for row in rows[1:]]
     parsed = waypoint_track(positions, times, values)
-    notes = [f"its column {one}" for one in unused_speed_notes(header)]
+    notes = [f"its column {one}" for one in unused_column_notes(header)]
     label = _column(header, "name")
     texts = [] if label is None else [_cell_of(row, label) for row in rows[1:]]
     return replace(parsed, notes=notes, extensions=carried_names(texts, positions))

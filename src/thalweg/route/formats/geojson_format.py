@@ -19,7 +19,7 @@ from thalweg.route.formats.parsed_track import (
     ParsedTrack,
     carried_names,
     position_of,
-    unused_speed_notes,
+    unused_column_notes,
     waypoint_track,
 )
 from thalweg.route.formats.route_file_options import RouteFileOptions
@@ -75,7 +75,7 @@ def parse_geojson(text: str) -> ParsedTrack:
     given = [properties for _, properties in chosen]
     times = [first_time, *(one.get("time") for one in given[1:])]
     parsed = waypoint_track(positions, times, given)
-    notes = unused_speed_notes(str(name) for one in given for name in one)
+    notes = unused_column_notes(str(name) for one in given for name in one)
     names = [str(one.get("name") or "") for one in given]
     return replace(
         parsed,

@@ -41,17 +41,20 @@ def parse_gpx(text: str) -> ParsedTrack:
     InputError : If it is not XML, declares entities, or holds neither.
     """
     root = parse_xml(text, "GPX")
-    points = _points(root, "rte", "rtept") or _points(root, "trk", "trkpt")
-    if not points:
+    routes = _points(root, "rte", "rtept") or _points(root, "trk", "trkpt")
+    if not routes:
         raise InputError(
             "The GPX holds no route and no track.",
             "A route has rtept elements, a track trkpt elements.",
             "Export the route itself, not only waypoints.",
         )
+    points, more = routes[0], len(routes) - 1
+    notes = [f"of its {more + 1} routes or tracks the first is used"] if more else []
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
     times = [next((e.text for e in p if local_name(e) == "time" and e.text), None) for p in points]
     parsed = waypoint_track(positions, times, [_extensions(point) for point in points])
-    return replace(parsed, extensions=carried_names(map(_name, points), positions))
+    names = carried_names(map(_name, points), positions)
+    return replace(parsed, notes=notes, extensions=names)
 
 
 def write_gpx(route: Route, path: str | Path, options: RouteFileOptions | None = None) -> None:
@@ -98,11 +101,8 @@ def _extensions(point: ElementTree.Element) -> dict[str, str]:
     return {local_name(element): (element.text or "").strip() for element in own}
 
 
-def _points(root: ElementTree.Element, parent: str, name: str) -> list[ElementTree.Element]:
-    """Return the points of the first parent element that has any, of whatever GPX version."""
-    for element in root.iter():
-        if local_name(element) == parent:
-            found = [point for point in element.iter() if local_name(point) == name]
-            if found:
-                return found
-    return []
+def _points(root: ElementTree.Element, parent: str, name: str) -> list[list[ElementTree.Element]]:
+    """Return the points of each parent element that has any, of whatever GPX version."""
+    parents = [element for element in root.iter() if local_name(element) == parent]
+    found = ([e for e in element.iter() if local_name(e) == name] for element in parents)
+    return [points for points in found if points]

@@ -15,7 +15,7 @@ import numpy as np
 from thalweg.chart.canals import CANALS
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import Position, check_position, parse_position
-from thalweg.core.given_numbers import shortened_repr, to_number
+from thalweg.core.given_numbers import finite_number, shortened_repr, to_number
 from thalweg.core.rhumb_lines import rhumb_pieces
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
@@ -70,7 +70,9 @@ class WaypointOrder(NamedTuple):
 #: What files call the wait at a waypoint and the speed ordered from there on, with units in SI.
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
-_SPEED_WORDS = ("speed", "speeds", "sog", "stw", "knots", "kn", "kts")
+_WAIT_WORDS = {"wait", "waits", "waiting", "stay", "stop", "dwell"}
+_SPEED_WORDS = {"speed", "speeds", "sog", "stw", "knots", "kn", "kts"}
+_RESULTS = ("speed_through_water_kn", "speed_over_ground_kn")
 GEOMETRY = "geometry"  #: what files call the kind of line of the leg after a waypoint
 RHUMB_LINE, GREAT_CIRCLE = "RL", "GC"  #: kinds of lines in files of this package
 _RHUMB_WORDS = ("rl", "rhumb", "rhumb line", "rhumbline", "loxodrome")
@@ -197,8 +199,8 @@ def _check_times_rise(moments: Sequence[float]) -> None:
         latest, of = moment, number
 
 
-def unused_speed_notes(names: Iterable[str]) -> list[str]:
-    """Return a note on speeds of a file that are not used.
+def unused_column_notes(names: Iterable[str]) -> list[str]:
+    """Return notes on speeds and waits of a file that are not used.
 
     Parameters
     ----------
@@ -207,24 +209,29 @@ def unused_speed_notes(names: Iterable[str]) -> list[str]:
 
     Returns
     -------
-    list of str : Empty where no speed is left out.
+    list of str : Empty where no speed and no wait is left out.
     """
     found = dict.fromkeys(names)
-    unused = [] if found.keys() & SPEEDS else [name for name in found if _is_speed(name)]
-    if not unused:
-        return []
+    speeds = [] if found.keys() & SPEEDS else [n for n in found if _is_speed(n)]
+    waits = [] if found.keys() & WAITS else [n for n in found if _WAIT_WORDS & _words(n)]
     return [
-        f"{' and '.join(unused)} {'is' if len(unused) == 1 else 'are'} not used: the ship sails at "
-        f"its own speed, or at those of {', '.join(SPEEDS)} (through calm water)"
-    ]
+        f"{' and '.join(unused)} {'is' if len(unused) == 1 else 'are'} not used: {rule}"
+        for unused, rule in (
+            (speeds, "the ship sails at its own speed, or at those of ordered_speed_kn "
+                     "(through calm water)"),
+            (waits, "the ship waits for the hours of waiting_h"),
+        )
+        if unused
+    ]  # fmt: skip
 
 
 def _is_speed(name: str) -> bool:
-    """Return whether the name of a column means a speed that this package does not write."""
-    if name in ("speed_through_water_kn", "speed_over_ground_kn"):
-        return False
-    words = re.split(r"[^a-z]+", name.casefold())
-    return any(word in _SPEED_WORDS for word in words) and "wind" not in words
+    words = _words(name)
+    return name not in _RESULTS and bool(_SPEED_WORDS & words) and "wind" not in words
+
+
+def _words(name: str) -> set[str]:
+    return set(re.split(r"[^a-z]+", name.casefold()))
 
 
 def is_rhumb_line(text: object, number: int) -> bool:
@@ -256,21 +263,8 @@ def _first_value(
     """Return the value under the first of some names, in SI; None if there is none."""
     for name, unit in names.items():
         if values.get(name) not in (None, ""):
-            return unit * number_of(values[name], what, "Correct it, or leave it empty.")
+            return unit * finite_number(values[name], what, "Correct it, or leave it empty.")
     return None
-
-
-def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
-    """Return a finite number, or raise `InputError` naming what it should have been."""
-    value = to_number(text)
-    if not math.isfinite(value):
-        raise InputError(
-            f"The {what} is {shortened_repr(text)}, not a number.",
-            "It is a decimal number.",
-            remedy,
-            value=text,
-        )
-    return value
 
 
 def position_of(lat: object, lon: object, number: int) -> Position:
@@ -287,16 +281,15 @@ def position_of(lat: object, lon: object, number: int) -> Position:
     (lat, lon) : Position [deg].
     """
     what = f"waypoint {number}"
-    texts = [
-        one for one in (lat, lon) if isinstance(one, str) and not math.isfinite(to_number(one))
-    ]
-    if len(texts) == 2 and all(_LETTER.search(one) for one in texts):
-        place = parse_position(" ".join(one.strip() for one in texts))
-        if place is not None:
-            return check_position(*place, what)
-    return check_position(
-        number_of(lat, f"latitude of {what}"), number_of(lon, f"longitude of {what}"), what
-    )
+    texts = [t for t in (lat, lon) if isinstance(t, str) and not math.isfinite(to_number(t))]
+    lettered = [one for one in (lat, lon) if _LETTER.search(str(one))]
+    if len(texts) == len(lettered) == 2 and (place := parse_position(" ".join(texts))):
+        return check_position(*place, what)
+    remedy = "Give degrees, such as 52.5, or both with letters, such as 37 53.5N and 023 35.0E."
+    given = {"latitude": lat, "longitude": lon}
+    without = sorted(given, key=lambda name: given[name] in lettered)  # is named first
+    found = {name: finite_number(given[name], f"{name} of {what}", remedy) for name in without}
+    return check_position(found["latitude"], found["longitude"], what)
 
 
 def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
@@ -328,10 +321,17 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
             file=name,
             field="depart",
         )
-    for note in parsed.all_notes(name):
+    for note in [*parsed.all_notes(name), *_repeated(parsed)]:
         warnings.warn(ThalwegWarning(f"{name}: {note}."), stacklevel=3)
     start = parsed.first_time if depart is None else parse_time(depart)
     return _track(_with_geodesics(parsed), start)  # type: ignore[arg-type]
+
+
+def _repeated(parsed: ParsedTrack) -> list[str]:
+    rows = list(zip(parsed.positions, parsed.orders))  # none of a bare line
+    at = [k for k in range(1, len(rows)) if rows[k][0] == rows[k - 1][0] and not rows[k][1].wait]
+    text = "{} of its positions repeat the one before, first waypoint {}: they count once"
+    return [text.format(len(at), at[0] + 1)] if at else []
 
 
 def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
@@ -355,7 +355,7 @@ def _with_geodesics(parsed: ParsedTrack) -> ParsedTrack:
 def _track(parsed: ParsedTrack, depart: float) -> Track:
     """Merge repeated positions: their waits add up, the last of their speeds holds."""
     orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
-    own = parsed.leg_numbers or list(range(1, len(orders)))
+    own = parsed.leg_numbers or range(1, len(orders))
     merged: list[tuple[Position, WaypointOrder]] = []
     number: list[int] = []  # of the leg that begins at each waypoint
     for place, order, leg in zip(parsed.positions, orders, [*own, 0]):
