@@ -3,9 +3,10 @@
 Harbours and rivers are land on most coastlines, or water that leads nowhere. The table
 ``data/port_approaches.csv.gz`` has a line for each port from its berth to its sea end, the first
 place two nautical miles from land in the open sea. A ship sails this line at no more than
-`MAX_APPROACH_SPEED`; voyages are optimised from sea end to sea end. The lines are made by
-``tools/make_port_approaches.py``: the best way in the coastline GSHHG h, or by hand where that
-coastline does not show the water. They are for planning and are not surveyed.
+her speed in approaches, `MAX_APPROACH_SPEED` if she gives none; voyages are optimised from sea end
+to sea end. The lines are made by ``tools/make_port_approaches.py``: the best way in the coastline
+GSHHG h, or by hand where that coastline does not show the water. They are for planning and are not
+surveyed.
 """
 
 from __future__ import annotations

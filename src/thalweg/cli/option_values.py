@@ -198,6 +198,8 @@ def open_ship(arguments: argparse.Namespace) -> Ship:
     ship = Ship.load(arguments.ship)
     if arguments.load_factor is not None:
         ship = ship.with_load_factor(arguments.load_factor)
+    if getattr(arguments, "approach_speed", None) is not None:  # some commands have no approaches
+        ship = ship.with_approach_speed(arguments.approach_speed)
     return ship
 
 

@@ -60,6 +60,13 @@ def add_ship_and_chart_options(parser: argparse.ArgumentParser, *, default_ukc: 
         f"default: {default_ukc}",
     )
     add_load_factor_option(parser)
+    parser.add_argument(
+        "--approach-speed",
+        type=float,
+        metavar="KN",
+        help="greatest speed over ground in the approaches of ports [kn]; default: that of the "
+        "ship file, or 10",
+    )
     add_output_options(parser, "files and plots")
     _add_route_file_options(parser)
 

@@ -37,6 +37,7 @@ from thalweg.route import join as join_routes
 from thalweg.route.canal_legs import approach_speed
 from thalweg.ship.fuel_prices import FuelTerms
 
+_LONG_APPROACH = 20.0 * NAUTICAL_MILE  # the speed there matters
 _NO_CHOICE = "exact: the whole voyage follows the approaches of its ports"
 
 
@@ -159,7 +160,7 @@ class ApproachSailing:
                 f"approach {approach.way}".rstrip()
                 + f" ({self._duration(approach) / HOUR:.1f} h at "
                 f"{self.speed / KNOT:.1f} kn{_in_canal_text(approach)}, line "
-                f"{approach.quality}): counted in all totals; "
+                f"{approach.quality}): counted in all totals; {_other_speed_text(approach)}"
                 "weather, tide and depth are not considered there."
                 + unknown_depth_text(approach, draught)
             )
@@ -179,6 +180,12 @@ class ApproachSailing:
         waits = np.append(wait, np.zeros(len(lat) - 1))
         track = Track(lat, lon, depart, waits, np.full(len(lat) - 1, self.setting))
         return context.evaluate(track, _terms(context))
+
+
+def _other_speed_text(approach: PortApproach) -> str:
+    """Return how another speed is set, for long approaches; empty for short ones."""
+    long = approach.length >= _LONG_APPROACH
+    return "another speed there is set by --approach-speed; " if long else ""
 
 
 def _terms(context: PlanningContext) -> FuelTerms | None:

@@ -10,7 +10,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canals import canals_with_dues
 from thalweg.chart.passage_crossings import CAPES, names_passed
 from thalweg.core.errors import NoRouteError
@@ -67,6 +66,7 @@ class _Question:
     ends: tuple[Endpoint, ...]
     offing: float
     speed: float
+    approach_speed: float
     draught: float
     dues: Mapping[str, float]
 
@@ -84,7 +84,7 @@ class _Question:
         lines = [end.approach for end in (ends[0], ends[-1]) if end.approach is not None]
         near = sum(line.length for line in lines)
         time = (at_sea - in_canals) / self.speed + sum(canal.transit_time for canal in canals)
-        time += sum(line.duration(min(self.speed, MAX_APPROACH_SPEED)) for line in lines)
+        time += sum(line.duration(min(self.speed, self.approach_speed)) for line in lines)
         entered = {line.through for line in lines}
         canals += [canal for canal in seas.chart.canals if canal.name in entered]
         names = names_passed(seas.chart.coastline, seas.chart.passages, *np.array(path).T)
@@ -166,7 +166,7 @@ def _question(plan: PlanData) -> _Question | None:
     duration = np.asarray(legs["arrive"]) - np.asarray(legs["depart"])
     sailed = float(np.sum(np.asarray(legs["length"])[at_sea]))
     time = float(np.sum(duration[at_sea]))  # without waits: a leg departs after its wait
-    speed = sailed / time if sailed > 0.0 and time > 0.0 else MAX_APPROACH_SPEED
+    speed = sailed / time if sailed > 0.0 and time > 0.0 else context.ship.approach_speed
     canals = canals_with_dues(chart.canals, context.ship.file.hull)
     ends = resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)
     return _Question(
@@ -174,6 +174,7 @@ def _question(plan: PlanData) -> _Question | None:
         tuple(without_small_ways(ends, ship_dimensions(context.ship))),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),
+        context.ship.approach_speed,
         float(context.ship.draught),
         {canal.name: canal.fee for canal in canals},
     )

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.approaches import MAX_APPROACH_SPEED
 from thalweg.chart.canal_parts import (
     canal_part,
     first_legs_of_transits,
@@ -141,7 +140,7 @@ def canal_legs(track: Track, chart: Chart | None, ship: Ship | None = None) -> C
     ----------
     ship : With a ship, canals have its dues, and legs along approaches of the chart are included,
         from the ends of the track on or where other water is land: they are sailed at
-        `thalweg.chart.approaches.MAX_APPROACH_SPEED`, or the ordered speed if that is lower.
+        `Ship.approach_speed`, or the ordered speed if that is lower.
     """
     none = np.full(len(track) - 1, -1, np.int64)
     legs = CanalLegs(none, (), none < -1)
@@ -223,9 +222,9 @@ def approach_speed(ship: Ship, setting: int) -> float:
 
     Returns
     -------
-    float : `MAX_APPROACH_SPEED`, or the calm-water speed of the setting if that is lower.
+    float : `Ship.approach_speed`, or the calm-water speed of the setting if that is lower.
     """
-    return float(np.fmin(MAX_APPROACH_SPEED, np.asarray(ship.speeds, float)[setting]))
+    return float(np.fmin(ship.approach_speed, np.asarray(ship.speeds, float)[setting]))
 
 
 def approach_leg(start: Position, goal: Position, speed: float) -> ApproachLeg:

@@ -220,6 +220,7 @@ class Ship:
     with_charges = changed(ship_changes.ship_with_charges)
     with_load_factor = changed(ship_changes.ship_with_load_factor)
     with_clearance = changed(ship_changes.ship_with_clearance)
+    with_approach_speed = changed(ship_changes.ship_with_approach_speed)
     with_limits = changed(ship_changes.ship_with_limits)
     with_speeds = changed(ship_changes.ship_with_speeds)
     speed_through_water = delegated(queries.ship_speed_through_water)
@@ -281,6 +282,11 @@ class Ship:
     def min_under_keel_clearance(self) -> float:
         """Least under-keel clearance of the ship file [m]; 0 if it gives none."""
         return self.file.limits.min_under_keel_clearance_m
+
+    @property
+    def approach_speed(self) -> float:
+        """Greatest speed over ground in the approaches of ports [m/s]: 10 kn by default."""
+        return self.file.limits.approach_speed_kn * KNOT
 
     @property
     def specific_fuel_consumption(self) -> float:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import float_array
+from thalweg.core.given_numbers import float_array, is_number, shortened_repr
 from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 from thalweg.ship.model_protocol import AdjustableModel
+from thalweg.ship.schema.ship_schema import GREATEST_APPROACH_KN, LEAST_APPROACH_KN
 from thalweg.ship.ship_limits import ShipLimits
 
 
@@ -109,6 +110,35 @@ def ship_with_clearance(ship: Any, clearance: float) -> Any:
     if squat is None:
         return ship
     return replace(ship, model=replace(ship.model, squat=replace(squat, clearance=clearance)))
+
+
+def ship_with_approach_speed(ship: Any, speed_kn: float) -> Any:
+    """Return the ship with another speed in the approaches of ports.
+
+    Parameters
+    ----------
+    speed_kn : float
+        Greatest speed over ground there [kn], 2 to 25.
+
+    Returns
+    -------
+    Ship
+        Otherwise unchanged.
+
+    Raises
+    ------
+    InputError
+        For another speed.
+    """
+    if not (is_number(speed_kn) and LEAST_APPROACH_KN <= speed_kn <= GREATEST_APPROACH_KN):
+        raise InputError(
+            f"The speed in approaches is {shortened_repr(speed_kn)} kn.",
+            f"It is {LEAST_APPROACH_KN:g} to {GREATEST_APPROACH_KN:g} kn.",
+            "Give the speed over ground in the fairways of the ports.",
+            field="approach_speed_kn",
+        )
+    limits = ship.file.limits.model_copy(update={"approach_speed_kn": float(speed_kn)})
+    return replace(ship, file=ship.file.model_copy(update={"limits": limits}))
 
 
 def ship_with_limits(ship: Any, limits: ShipLimits) -> Any:

@@ -33,6 +33,7 @@ LAND_OF_LINES_BY_HAND: Final = 6.0  #: of one leg, from which on a note says so 
 _LAND_STEP: Final = 0.2 * NAUTICAL_MILE
 #: Miles of charted land on one leg, of computed lines and of those by hand, which follow rivers.
 _OVER_LAND: Final = {False: 2.0, True: LAND_OF_LINES_BY_HAND}
+_OVER_LAND_AT_BERTH: Final = 3.0  # the same of the first leg: ports have the place of the town
 _LEAST_ROOM: Final = 2.0  # under a bridge without a note [m]
 
 
@@ -85,9 +86,11 @@ def approach_limit_notes(
 
 def _over_land_notes(chart: Chart, approach: PortApproach) -> list[str]:
     lat, lon = np.array(approach.line, float).T
-    miles = most_miles_over_land(chart, lat, lon)
-    by_hand = approach.quality != "computed"
-    return [over_land_note(approach.label, miles)] if miles >= _OVER_LAND[by_hand] else []
+    least = _OVER_LAND[approach.quality != "computed"]
+    first = most_miles_over_land(chart, lat[:2], lon[:2])
+    miles = most_miles_over_land(chart, lat[1:], lon[1:])
+    miles = max(miles, first if first >= _OVER_LAND_AT_BERTH else 0.0)
+    return [over_land_note(approach.label, miles)] if miles >= least else []
 
 
 def most_miles_over_land(chart: Chart, lat: FloatArray, lon: FloatArray) -> float:

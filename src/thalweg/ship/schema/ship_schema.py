@@ -199,13 +199,18 @@ class LoadingSection(Section):
     capacity_m3: Volume | None = None
 
 
+LEAST_APPROACH_KN, GREATEST_APPROACH_KN = 2.0, 25.0  #: of the speed in approaches [kn]
+_ApproachSpeed = Annotated[Number, Field(ge=LEAST_APPROACH_KN, le=GREATEST_APPROACH_KN)]
+
+
 class LimitsSection(Section):
-    """Waves, wind, clearance and motions that the ship must not exceed."""
+    """Waves, wind, speed in approaches, clearance and motions that the ship must keep to."""
 
     max_significant_wave_height_m: Annotated[Number, Field(gt=0.0, le=40.0)] | None = None
     max_wind_speed_kn: Annotated[Number, Field(gt=0.0, le=300.0)] | None = None
     max_wind_speed_m_s: Annotated[Number, Field(gt=0.0, le=150.0)] | None = None
     min_under_keel_clearance_m: Annotated[Number, Field(ge=0.0, le=50.0)] = 0.0
+    approach_speed_kn: _ApproachSpeed = 10.0
     msc_circ_1228: Texts = ()
     danger_from_wave_height_m: WaveHeight | None = None
     roll_period_tolerance: Annotated[Number, Field(gt=0.0, le=0.5)] = 0.1
