@@ -8,23 +8,45 @@ import pytest
 from thalweg import Sea, Ship, evaluate
 from thalweg.core.units import KNOT
 from thalweg.planning.report.note_order import count_of_dangers
-from thalweg.planning.report.waiting_report import stemming_warnings, window_notes
+from thalweg.planning.report.waiting_report import (
+    stemming_warnings,
+    stream_warnings,
+    window_notes,
+)
+
+
+def with_current_of(eastward_kn):
+    """Return a route of a ship of 10 kn eastwards, with a current over 0.1 degree."""
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: np.where(
+                (x > -4.6) & (x < -4.5), eastward_kn * KNOT, 0.0
+            ),
+            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
+        }
+    )
+    return evaluate(
+        [(0.0, -5.0), (0.0, -4.0)], ship=Ship.simple(speed_kn=10.0), sea=sea, depart="2026-01-01"
+    )
+
+
+@pytest.mark.parametrize(("along_kn", "begin"), [
+    (9.0, "Strong stream: 9.0 kn"), (7.5, ""), (-8.8, "Strong stream: 8.8 kn"),
+    (-9.5, "Stems the current"), (0.0, ""),
+])  # fmt: skip
+def test_a_stream_nearly_as_fast_as_the_ship_is_stated(along_kn, begin):
+    notes = stream_warnings(with_current_of(along_kn))
+    assert len(notes) == bool(begin)
+    for note in notes:
+        assert note.startswith(begin)
+        assert count_of_dangers([note]) == 1
+        assert "the ship makes 10.0 kn through the water" in note or begin.startswith("Stems")
 
 
 @pytest.mark.parametrize(("against_kn", "warned"), [(9.5, True), (8.8, False), (-3.0, False)])
 def test_a_ship_that_stems_a_current_is_warned_of(against_kn, warned):
     """Over 0.1 degree of longitude a ship of 10 kn makes 0.5 kn for 12 h."""
-    sea = Sea.from_functions(
-        {
-            "eastward_sea_water_velocity": lambda t, y, x: np.where(
-                (x > -4.6) & (x < -4.5), -against_kn * KNOT, 0.0
-            ),
-            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
-        }
-    )
-    route = evaluate(
-        [(0.0, -5.0), (0.0, -4.0)], ship=Ship.simple(speed_kn=10.0), sea=sea, depart="2026-01-01"
-    )
+    route = with_current_of(-against_kn)
     notes = stemming_warnings(route)
     assert len(notes) == warned
     for note in notes:

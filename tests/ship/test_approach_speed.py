@@ -26,7 +26,7 @@ def test_another_speed_is_kept_up_to_the_ordered_one():
 def test_the_ship_file_may_give_it(tmp_path):
     path = tmp_path / "ferry.yaml"
     path.write_text(
-        "name: ferry\nhull: {length_between_perpendiculars_m: 200, breadth_m: 31, draught_m: 7, type: roro}\n"
+        "name: ferry\nhull: {length_between_perpendiculars_m: 200, breadth_m: 31, draught_m: 7}\n"
         "speeds_kn: [12, 17, 20]\nlimits: {approach_speed_kn: 17}\n"
     )
     assert Ship.load(path).approach_speed == pytest.approx(17.0 * KNOT)

@@ -17,13 +17,19 @@ from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED, PASSAGES_C
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.distance_report import SHOAL_DETOUR
 from thalweg.planning.report.filled_weather import FILLED
-from thalweg.planning.report.given_route_report import NEAR_LAND
+from thalweg.planning.report.given_route_report import NEAR_LAND, TURNS_ROUND
 from thalweg.planning.report.ice_report import REACHES_ICE
 from thalweg.planning.report.land_report import CLOSE_TO_LAND, PASSES
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.unread_weather import WAVES_UNREAD, WIND_UNREAD
-from thalweg.planning.report.waiting_report import DEPARTURES, PASSES_TIME, STEMS, WAITS
+from thalweg.planning.report.waiting_report import (
+    DEPARTURES,
+    PASSES_TIME,
+    STEMS,
+    STRONG_STREAM,
+    WAITS,
+)
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
@@ -51,7 +57,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     SQUAT_UNCOUNTED,
     WAITS,
     PASSES_TIME,
-    STEMS,
+    (STEMS, STRONG_STREAM),
     TOO_STEEP,
     WAVES_UNCOUNTED,
     REACHES_ICE,
@@ -62,7 +68,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     CLOSE_TO_LAND,
     AGAINST_TRAFFIC,
     NO_OFFING_ROUTE,
-    TURNS_BACK,
+    (TURNS_BACK, TURNS_ROUND),
     INSHORE_USED,
     (PASSAGE_CLOSED, PASSAGES_CLOSED),
     OTHER_WAYS,

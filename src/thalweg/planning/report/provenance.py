@@ -26,7 +26,7 @@ from thalweg.planning.report.unread_weather import unread_weather_notes
 from thalweg.planning.report.waiting_report import (
     heavy_weather_warnings,
     hours_and_slowest,
-    stemming_warnings,
+    stream_warnings,
     waiting_notes,
     waiting_weather_warnings,
 )
@@ -69,7 +69,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += ice_warnings(route, context.sea)
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(_OF_METHODS)]
-    notes += slow_speed_warnings(route) + stemming_warnings(route)
+    notes += slow_speed_warnings(route) + stream_warnings(route)
     notes += steep_wave_warnings(route, context.sea)
     if not any(note.startswith(UNREAD) for note in context.needs.notes):  # it says so already
         notes += unread_weather_notes(route, context.sea, context.ship)
@@ -118,7 +118,7 @@ def given_route_warnings(
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
     notes += guesses_of_files(sea.layers, frozenset(route.samples))
-    notes += slow_speed_warnings(route) + stemming_warnings(route)
+    notes += slow_speed_warnings(route) + stream_warnings(route)
     notes += steep_wave_warnings(route, sea)
     notes += unread_weather_notes(route, sea, ship)
     notes += waiting_weather_warnings(route, ship) + heavy_weather_warnings(route, ship)

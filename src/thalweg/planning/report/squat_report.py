@@ -49,7 +49,7 @@ def least_water_with_squat(route: Route, ship: Ship) -> LeastWaterWithSquat | No
         return None
     depth = np.asarray(route.samples["depth"], float)
     speed = np.asarray(route.samples["speed_through_water"], float)
-    known = np.flatnonzero(np.isfinite(depth) & np.isfinite(speed))
+    known = np.flatnonzero((depth > draught) & np.isfinite(speed))  # aground is stated elsewhere
     model = squat_of_sheet(ship) if len(known) else None
     if model is None:
         return None

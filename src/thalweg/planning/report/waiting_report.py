@@ -19,6 +19,9 @@ from thalweg.ship import Ship
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
 DEPARTURES: Final = "Departures in the window"  #: a note on them begins so
 _SHOWN: Final = 7  # departures of a window
+STRONG_STREAM: Final = "Strong stream"  #: a note on a current nearly as fast as the ship begins so
+_STRONG: Final = 0.8  # of the speed through the water
+_STRONG_AT_LEAST: Final = 2.0 * KNOT  # [m/s]
 STEMS: Final = "Stems the current"  #: a note on miles with hardly any way over ground begins so
 _LEAST_OVER_GROUND: Final = 1.0 * KNOT  # [m/s]
 _SHORTEST_STEMMING: Final = 0.5  # [h]
@@ -157,6 +160,11 @@ def waiting_notes(route: Route) -> list[str]:
     ]
 
 
+def stream_warnings(route: Route) -> list[str]:
+    """Return a warning where the ship makes hardly any way against a current, or is swept along."""
+    return stemming_warnings(route) or _strong_stream_warnings(route)
+
+
 def stemming_warnings(route: Route) -> list[str]:
     """Return a warning where the ship makes hardly any way over ground against a current."""
     made = np.asarray(route.samples["speed_over_ground"], float)
@@ -170,6 +178,27 @@ def stemming_warnings(route: Route) -> list[str]:
         f"{STEMS}: less than 1 kn over ground for {duration_text(hours * HOUR)}, down to "
         f"{made[k] / KNOT:.1f} kn at {place} on {utc_text(float(time[k]))}. Little is left to keep "
         "clear of dangers: see whether a later departure arrives as early."
+    ]
+
+
+def _strong_stream_warnings(route: Route) -> list[str]:
+    """Return a warning where the current is nearly as fast as the ship through the water."""
+    names = "eastward_sea_water_velocity", "northward_sea_water_velocity"
+    if not set(names) <= set(route.samples):
+        return []
+    current = np.hypot(*(np.asarray(route.samples[name], float) for name in names))
+    through = np.asarray(route.samples["speed_through_water"], float)
+    known = (current >= _STRONG_AT_LEAST) & (through > 0.0)
+    share = np.divide(current, through, out=np.zeros_like(current), where=known)
+    k = int(np.argmax(share))
+    if share[k] < _STRONG:
+        return []
+    place = format_position_minutes(float(route.samples["lat"][k]), float(route.samples["lon"][k]))
+    return [
+        f"{STRONG_STREAM}: {current[k] / KNOT:.1f} kn at {place} on "
+        f"{utc_text(float(route.samples['time'][k]))}, where the ship makes "
+        f"{through[k] / KNOT:.1f} kn through the water. She can hardly turn back or wait there: "
+        "pass nearer to slack water, and see the pilot book."
     ]
 
 
