@@ -297,6 +297,16 @@ def test_times_and_positions_as_they_are_spoken():
     assert parse_position(text) == pytest.approx((-34.0, 151.2083), abs=1e-3)
 
 
+def test_the_parts_of_a_cost_are_stated_where_there_are_several(answer):
+    legs = dict(answer.best.legs)
+    legs |= {"cost_of_fuel": np.array([1200.0]), "cost_of_time": np.array([3400.4])}
+    legs |= {"cost": np.array([4600.4]), "cost_of_eu_charges": np.array([np.nan])}
+    route = replace(answer.best, legs=legs, prices={"currency": "USD"})
+    assert cost_text(route, []).startswith("4,600 USD (fuel 1,200, time 3,400)")
+    legs["cost_of_time"] = np.array([0.0])
+    assert "(" not in cost_text(replace(route, legs=legs), [])
+
+
 def test_canals_and_their_dues_are_in_the_lines_of_distance_and_cost(answer):
     """The route of the fixture with a canal in its chart from its first to its last waypoint."""
     track = answer.best.track

@@ -159,7 +159,20 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     outside = (route.prices or {}).get("fuel_per_t") or {}
     if route.fuel_eca_t and outside.get("value") and inside.get("value") == outside["value"]:
         prices += "; no dearer fuel in control areas, where at most 0.10 % of sulphur is allowed"
-    return f"{amount_text(route.cost, route.currency)}{paid}" + (f"; {prices}" if prices else "")
+    amount = amount_text(route.cost, route.currency) + _parts_text(route)
+    return f"{amount}{paid}" + (f"; {prices}" if prices else "")
+
+
+def _parts_text(route: Route) -> str:
+    """Return the parts of a cost but canal dues, where there are two or more."""
+    known = {
+        name: value
+        for name, value in route.cost_parts.items()
+        if value is not None and value >= 0.5 and name != "canal dues"
+    }
+    if len(known) < 2:
+        return ""
+    return f" ({', '.join(f'{name} {value:,.0f}' for name, value in known.items())})"
 
 
 def prices_text(prices: Mapping[str, Any]) -> str:
