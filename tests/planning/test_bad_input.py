@@ -6,6 +6,7 @@ import pickle
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
@@ -19,6 +20,7 @@ from thalweg.core.errors import (
     ThalwegError,
 )
 from thalweg.planning.request.voyage_endpoints import resolve_endpoint, resolve_places
+from thalweg.planning.sea_distance import sea_distance
 from thalweg.ship import ShipLimits
 
 DEPART = "2026-01-01T00:00Z"
@@ -311,3 +313,20 @@ def test_an_unknown_entry_of_a_voyage_has_near_matches():
     assert dataclasses.replace(voyage, speed_kn=9.0).speed_kn == 9.0
     assert pickle.loads(pickle.dumps(voyage)) == voyage
     assert "objective" in inspect.signature(Voyage).parameters
+
+
+@pytest.mark.parametrize("place", [None, (1.0, 2.0, 3.0), 7, ""])
+def test_distances_refuse_what_is_no_place(place):
+    with pytest.raises(InputError, match=r"The start.* is (not a place|empty)"):
+        sea_distance(place, "Rotterdam")
+
+
+def test_distances_refuse_the_name_of_a_ship():
+    with pytest.raises(InputError, match="which is not a Ship"):
+        sea_distance("Hamburg", "Rotterdam", ship="handysize-bulker")
+
+
+@pytest.mark.parametrize("missing", [pd.NaT, np.datetime64("NaT")])
+def test_missing_times_are_refused(missing):
+    with pytest.raises(InputError, match="A time is missing"):
+        Voyage(start=(0.0, 0.0), goal=(1.0, 0.0), depart=missing)

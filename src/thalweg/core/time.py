@@ -33,13 +33,13 @@ def parse_time(value: TimeLike) -> float:
     InputError
         If the text is not a time, or the number is not finite or outside the years 1 to 9999.
     """
+    if isinstance(value, (np.datetime64, datetime)) and value != value:  # NaT of numpy and pandas
+        raise InputError(
+            "A time is missing (NaT).",
+            "A time is a date and a time of day in UTC.",
+            "Give one such as 2026-01-01T00:00Z.",
+        )
     if isinstance(value, np.datetime64):
-        if np.isnat(value):
-            raise InputError(
-                "A time is missing (NaT).",
-                "A time is a date and a time of day in UTC.",
-                "Give one such as 2026-01-01T00:00Z.",
-            )
         return _from_datetime64(value)
     if isinstance(value, datetime):
         moment = value

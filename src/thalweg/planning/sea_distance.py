@@ -222,9 +222,11 @@ def sea_distance(
     closed = SMALL_CANALS if avoid is None else asked
     opened = opened_names(chart, open)
     if ship is not None:
+        from thalweg.planning.request.coverage_check import check_ship_type
         from thalweg.planning.request.offing_choice import ship_dimensions  # loads ship files
         from thalweg.planning.request.size_closures import closed_and_open
 
+        check_ship_type(ship)
         sizes = ship_dimensions(ship)
         of_ship = closed_and_open(ship, chart, SMALL_CANALS)
         in_spite = {one.name for one in find_passages(opened)}

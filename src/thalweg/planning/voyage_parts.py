@@ -67,10 +67,10 @@ class Itinerary:
                 field="via",
             )
         vias = enumerate(self.via)
-        places = [_place(place, f"via point {i + 1}", f"via.{i}") for i, place in vias]
+        places = [checked_place(place, f"via point {i + 1}", f"via.{i}") for i, place in vias]
         forbidden = (self.forbid,) if isinstance(self.forbid, str) else _as_list(self.forbid)
         for entry in ("start", "goal"):
-            object.__setattr__(self, entry, _place(getattr(self, entry), entry, entry))
+            object.__setattr__(self, entry, checked_place(getattr(self, entry), entry, entry))
         object.__setattr__(self, "via", tuple(places))
         object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
         for entry in ("open", "avoid"):
@@ -334,7 +334,7 @@ def _window(given: Any) -> tuple[float, float]:
             "A departure window is two times.",
             "Give depart_window=(earliest, latest).",
         )
-    first, last = (parse_time(t) for t in given)
+    first, last = map(parse_time, given)
     if not first <= last:
         raise InputError(
             f"The departure window ends ({format_time(last)}) before it begins "
@@ -347,13 +347,11 @@ def _window(given: Any) -> tuple[float, float]:
 
 def _as_list(given: Any) -> tuple[Any, ...]:
     """Return an iterable as a tuple; a single value as a tuple of one."""
-    try:
-        return tuple(given)
-    except TypeError:
-        return (given,)
+    return tuple(given) if hasattr(given, "__iter__") else (given,)
 
 
-def _place(place: Any, what: str, field: str) -> Place:
+def checked_place(place: Any, what: str, field: str) -> Place:
+    """Return a place as a checked position [deg] or a text; `InputError` for anything else."""
     form = 'A place is (lat, lon) in degrees or text such as "52.0N 4.1E" or a port.'
     if isinstance(place, str):
         if not place.strip():
@@ -363,9 +361,9 @@ def _place(place: Any, what: str, field: str) -> Place:
         lat, lon = place
         with errors_about(field):
             return check_position(lat, lon, what)
-    except (TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
+    except InputError:
+        raise
+    except (TypeError, ValueError):
         asked = f"The {what} {shortened_repr(place)} is not a place."
         raise InputError(asked, form, "Give it in one of these forms.", field=field) from None
 

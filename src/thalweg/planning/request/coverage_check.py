@@ -59,20 +59,29 @@ def check_argument_types(voyage: object, ship: object, sea: object, chart: objec
     voyage, ship, sea, chart : object
         Arguments of `plan`; required are a `Voyage`, `Ship`, `Sea` and `Chart`.
     """
+    check_ship_type(ship)
     wanted = {
         "voyage": (voyage, Voyage, "Voyage(start=..., goal=..., depart=...)"),
-        "ship": (ship, Ship, "Ship.load(name or file) or Ship.simple(...)"),
         "sea": (sea, Sea, "Sea.open(files), Sea.from_functions(...), Sea.storm() or Sea.calm()"),
         "chart": (chart, Chart, 'Chart.gshhg("i") or Chart.open_water(...)'),
     }
     for name, (value, kind, example) in wanted.items():
-        if not isinstance(value, kind):
-            raise InputError(
-                f"The {name} is {value!r}, which is not a {kind.__name__}.",
-                f"Make one with {example}.",
-                f"Give a {kind.__name__}.",
-                field=name,
-            )
+        _check_type(name, value, kind, example)
+
+
+def check_ship_type(ship: object) -> None:
+    """Raise `InputError` for a ship that is none, such as the name of one."""
+    _check_type("ship", ship, Ship, "Ship.load(name or file) or Ship.simple(...)")
+
+
+def _check_type(name: str, value: object, kind: type, example: str) -> None:
+    if not isinstance(value, kind):
+        raise InputError(
+            f"The {name} is {value!r}, which is not a {kind.__name__}.",
+            f"Make one with {example}.",
+            f"Give a {kind.__name__}.",
+            field=name,
+        )
 
 
 def endpoints_within_coverage(

@@ -27,7 +27,7 @@ from thalweg.planning.request.swapped_degrees import (
     swap_hint,
     swap_notice,
 )
-from thalweg.planning.voyage_parts import Place
+from thalweg.planning.voyage_parts import Place, checked_place
 
 #: Greatest distance that a position is moved [m]; coastlines are generalised.
 MAX_SNAP_POSITION = 2_000.0
@@ -266,6 +266,7 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         As of `resolve_endpoint`, if two places in succession are the same, or if latitude and
         longitude of the ends are swapped.
     """
+    start, goal = checked_place(start, "start", "start"), checked_place(goal, "goal", "goal")
     check_order_of_degrees(start, goal, chart)
     places = [("start", "start", start)]
     places += [(f"via.{k}", f"via point {k + 1}", place) for k, place in enumerate(via)]
