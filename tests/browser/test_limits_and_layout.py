@@ -131,3 +131,23 @@ def test_a_long_list_can_be_read_to_its_end(visit):
       return [box.querySelector("summary").textContent, box.querySelectorAll("details li").length,
               box.querySelectorAll("li").length]; }"""
     assert page.evaluate(script) == ["2 more", 2, 5]
+
+
+def test_members_of_a_forecast_that_break_a_limit_are_stated_first(visit, planned):
+    spread = {"mean": 80.0, "p10": 78.5, "p90": 86.0, "cvar": 86.4, "members": 4}
+    row = {"members": 6, "infeasible": [0, 3], "shown_member": 5, "time_h": spread}
+    row |= {"first_reason": "waves at 44 59.1S 163 33.3E", "highest_waves_m": [8.2, None, 6.9]}
+
+    def with_members(route):
+        answer = route.fetch()
+        route.fulfill(response=answer, json=answer.json() | {"ensemble": [row]})
+
+    visit.page.route(f"**/api/v1/plans/{planned}/result", with_members)
+    page = visit.open(f"#plan={planned}")
+    alert = page.get_by_role("alert").filter(has_text="In 2 of 6 members of the forecast (0, 3)")
+    playwright_api.expect(alert).to_contain_text("waves at 44 59.1S 163 33.3E")
+    card = page.locator(".card", has_text="Members of the forecast")
+    playwright_api.expect(card).to_contain_text("4 of 6 keep the limits")
+    playwright_api.expect(card).to_contain_text("those of member 5")
+    playwright_api.expect(card).to_contain_text("waves of up to 8.2 m")
+    visit.picture("members")

@@ -58,6 +58,7 @@ export function masterBrief(result, chosen, profile, { shipName, seas, run }) {
   const head = h("section.brief-page", { "aria-label": "Brief for the master" },
     h("header", {}, h("div", {}, h("h1", {}, ends), h("p", {}, `Voyage plan · ${objective}${plan.routes.length > 1 ? ` · route ${chosen + 1} of ${plan.routes.length}` : ""}`)), h("p.brief-caution", {}, "Not for navigation")),
     route.feasible ? null : h("p.brief-broken", {}, `This route ${faultWords(route.violations)}.`),
+    plan.ensemble?.[chosen]?.infeasible?.length ? h("p.brief-broken", {}, `In ${plan.ensemble[chosen].infeasible.length} of ${plan.ensemble[chosen].members} members of the forecast this route cannot be sailed within the limits.`) : null,
     h("div.brief-columns", {},
       list([["Ship", h("b", {}, shipName)], ["Draught", `${measure(sheet?.draught_m, 1, "m")}${known(request.load_factor) ? `, load ${number(100 * request.load_factor)} %` : ""}`], ["Departure", h("b", {}, utc(seconds(route.depart)))], ["Arrival", h("b", {}, utc(seconds(route.arrive)))], ["Time", `${duration(route.time_h)}${route.waiting_h > 0 ? `, of it ${duration(route.waiting_h)} waiting` : ""}`]]),
       list([["Distance", h("b", {}, measure(route.distance_nm, 1, "nm"))], ["Speed", `${known(route.time_h) ? `${number(route.distance_nm / route.time_h, 1)} kn mean over ground` : "unknown"}${range ? `; ${range} kn ordered` : ""}`], ["Fuel", `${measure(route.fuel_t, 1, "t")}${eca}`], ["Cost", measure(costOf(route), 0, route.currency)], ["CO₂", measure(route.co2_t, 0, "t")]])),

@@ -52,6 +52,7 @@ export class ResultView {
       h("p.lead", {}, to ? readable(`${from} to ${to}, leaves `) : "Leaves ", h("b", {}, time(seconds(route.depart), true)), " UTC"),
       plan.cancelled ? h("p.note", {}, "Stopped: this is the best found so far.") : null,
       this.#faults(route),
+      this.#faultsOfMembers(plan),
       this.#cards(route, profile, beside),
       plan.voyage && !plan.alternatives ? this.#proof(plan) : null,
       plan.alternatives ? this.#alternatives(plan) : plan.routes.length > 1 ? this.#routes(plan) : null,
@@ -74,6 +75,24 @@ export class ResultView {
       h("span.remedy", {}, `The rings on the chart show where.${remedyOf(violations)}`));
   }
 
+  // Of an ensemble the figures are those of one member: where others break a limit, that comes first.
+  #faultsOfMembers(plan) {
+    const row = plan.ensemble?.[selection.route];
+    if (!row?.infeasible?.length) return null;
+    return h("div.error", { role: "alert" }, h("b", {}, `In ${row.infeasible.length} of ${row.members} members of the forecast (${row.infeasible.join(", ")}) this route cannot be sailed within the limits.`),
+      h("span.remedy", {}, ` First: ${row.first_reason}.`));
+  }
+
+  // Time over the members of an ensemble, and the highest waves of the worst one.
+  #members(plan) {
+    const row = plan.ensemble?.[selection.route];
+    if (!row) return null;
+    const kept = row.members - row.infeasible.length, spread = row.time_h;
+    const highest = Math.max(...(row.highest_waves_m || []).filter(known));
+    const words = [`the figures are those of member ${row.shown_member}`, spread ? `time ${duration(spread.p10)} to ${duration(spread.p90)} (10 and 90 %)` : "", Number.isFinite(highest) ? `waves of up to ${number(highest, 1)} m` : ""];
+    return h("div.card.wide", {}, h("dt", {}, "Members of the forecast"), h("dd", {}, `${kept} of ${row.members} keep the limits`, h("small", {}, words.filter(Boolean).join("; "))));
+  }
+
   #cards(route, profile, beside) {
     const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null, more ? h("small", {}, more) : null));
     const than = (mine, other, text) => (known(mine) && known(other) && /[1-9]/.test(text(mine - other)) ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
@@ -93,6 +112,7 @@ export class ResultView {
       card("CO₂", number(route.co2_t, 0), "t"),
       calm ? assumed : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
       known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : calm ? null : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
+      this.#members(this.result.plan),
       this.#comfort(route, card));
   }
 
