@@ -112,7 +112,7 @@ def test_a_ship_that_is_too_large_gets_the_reason():
     kiel = CANALS[2]
     assert kiel.transit_restriction(draught=9.0, beam=30.0) == ""
     assert kiel.transit_restriction(draught=9.0, beam=30.0, length=150.0) == ""
-    assert "7 m allowed above 160 m" in kiel.transit_restriction(draught=9.0, length=180.0)
+    assert "8.84 m allowed for 180 m" in kiel.transit_restriction(draught=9.0, length=180.0)
     assert kiel.transit_restriction(draught=7.0, length=230.0) == ""
     assert "length of 250 m" in kiel.transit_restriction(draught=7.0, length=250.0)
     said = kiel.transit_restriction(draught=12.0, beam=40.0)

@@ -182,10 +182,19 @@ def test_a_held_speed_is_named_and_needs_a_speed(capsys, track):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--ets-price", "80"], "EU ETS on 50 %, FuelEU not counted (no --eur-rate)"),
-        (["--eur-rate", "1.1"], "FuelEU on 50 %, EU ETS not counted (no --ets-price)"),
-        (["--ets-price", "80", "--eur-rate", "1.1"], "EU charges on 50 %\n"),
-        (["--ets-price", "80", "--eu-year", "2024"], "EU charges on 50 %\n"),  # before FuelEU
+        (
+            ["--ets-price", "80"],
+            "EU ETS on 50 % by the rules of 2026, FuelEU not counted (no --eur-rate)",
+        ),
+        (
+            ["--eur-rate", "1.1"],
+            "FuelEU on 50 % by the rules of 2026, EU ETS not counted (no --ets-price)",
+        ),
+        (["--ets-price", "80", "--eur-rate", "1.1"], "EU charges on 50 % by the rules of 2026\n"),
+        (
+            ["--ets-price", "80", "--eu-year", "2024"],
+            "EU charges on 50 % by the rules of 2024\n",
+        ),  # before FuelEU
     ],
 )
 def test_the_cost_says_which_charges_do_not_count(capsys, track, options, words):
@@ -266,3 +275,19 @@ def test_ordered_speeds_of_routes_end_at_100_knots():
         InputError, match="above 0 and at most 100 kn; the ship file gives 10 to 17 kn"
     ):
         ship.with_speeds([200.0 * KNOT])
+
+
+@pytest.mark.parametrize(
+    ("depart", "rules", "share"),
+    [("2025-06-01", 2025, 0.7), ("2024-06-01", 2024, 0.4), ("1998-06-01", 2026, None)],
+)
+def test_the_european_rules_are_those_of_the_year_of_departure(capsys, track, depart, rules, share):
+    asked = ["evaluate", track, *SHIP, "--depart", depart, "--eu-share", "100", "--ets-price", "80"]
+    _, scored = run_json(capsys, *asked)
+    assert scored["prices"]["european_charges"]["year"] == rules
+    _, later = run_json(capsys, *asked, "--eu-year", "2026")
+    if share is None:
+        assert scored["cost_parts"] == later["cost_parts"]
+    else:  # methane and nitrous oxide count from 2026 on
+        part = scored["cost_parts"]["EU charges"] / later["cost_parts"]["EU charges"]
+        assert share * 0.97 < part < share

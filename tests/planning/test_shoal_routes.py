@@ -154,7 +154,7 @@ def test_ships_that_fit_take_the_kiel_canal_and_others_are_told_why_not():
     # nor do those off its other gate in the Kiel Fjord raise an alarm: ships have a dredged way
     assert not any("54 2" in note for note in small.notes if note.startswith("Check the depth"))
     assert large.best.distance_nm > 750.0
-    assert any("Kiel Canal" in note and "above 160 m of length" in note for note in large.notes)
+    assert any("Kiel Canal" in note and "for 180 m of length" in note for note in large.notes)
 
 
 @pytest.mark.slow

@@ -52,7 +52,8 @@ class Canal:
     tariff : Dues by the size of the ship; it counts as long as ``fee`` is its mean.
     fee_basis : How the fee of a ship was found.
     max_length, max_air_draught : Largest length and height above water allowed [m].
-    long_ship_limit : Length [m] from which on a smaller draught [m] is allowed, and that draught.
+    long_ship_limit : Length [m] from which on the draught falls evenly to that of the longest
+        ships, and that draught [m].
 
     Raises
     ------
@@ -121,16 +122,24 @@ class Canal:
         air_draught: float | None = None,
     ) -> str:
         """Return why a ship of these sizes [m] may not pass, as text; empty if it may."""
-        is_long = length is not None and length > self.long_ship_limit[0]
-        deepest = min(self.max_draught, self.long_ship_limit[1] if is_long else np.inf)
+        deepest = self._greatest_draught(length)
         reasons = []
         sizes = (draught, beam, length, air_draught)
         limits = (deepest, self.max_beam, self.max_length, self.max_air_draught)
         for what, over in sizes_over_limits(sizes, limits):
             reasons.append(f"the {what} of {over}")
-            if what == "draught" and is_long:
-                reasons[-1] += f" above {self.long_ship_limit[0]:g} m of length"
+            if what == "draught" and deepest < self.max_draught:
+                reasons[-1] += f" for {length:.4g} m of length"
         return f"{self.title}: " + " and ".join(reasons) if reasons else ""
+
+    def _greatest_draught(self, length: float | None) -> float:
+        """Return the greatest draught [m]; that of long ships falls evenly with their length."""
+        first, least = self.long_ship_limit
+        if length is None or not length > first:
+            return self.max_draught
+        depths = self.max_draught, min(least, self.max_draught)
+        found = float(np.interp(length, (first, max(self.max_length, first + 1.0)), depths))
+        return round(found, 2)
 
 
 def sizes_over_limits(

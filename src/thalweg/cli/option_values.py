@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from thalweg.cli.options import FILLABLE
 from thalweg.core.errors import InputError
+from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
+
+_USUAL_YEAR: Final = 2026  # whose European rules hold where no time is given
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -245,16 +248,15 @@ def with_held_order(ship: Ship, arguments: argparse.Namespace) -> Ship:
 
 def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     """Return the charges of the European Union that the options give."""
-    from thalweg.planning.request.voyage_surroundings import check_charges
+    from thalweg.planning.request.voyage_surroundings import CHARGE_YEARS, check_charges
     from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
     share, allowance, euro = arguments.eu_share, arguments.ets_price, arguments.eur_rate
-    check_charges(
-        {"ets_price": allowance or 0.0, "eur_rate": euro or 0.0, "year": arguments.eu_year}
-    )
+    year = _year_of_rules(arguments, CHARGE_YEARS)
+    check_charges({"ets_price": allowance or 0.0, "eur_rate": euro or 0.0, "year": year})
     if allowance is None and euro is None:
         return None
-    prices = allowance or 0.0, euro or 0.0, arguments.eu_year
+    prices = allowance or 0.0, euro or 0.0, year
     if share is not None:
         return EuropeanCharges(share / 100.0, *prices)
     from thalweg.planning.request.european_scope import share_between_places
@@ -262,6 +264,21 @@ def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     ends = (getattr(arguments, name, None) for name in ("start", "goal"))
     found, source = share_between_places(*ends)
     return EuropeanCharges(found, *prices, source)
+
+
+def _year_of_rules(arguments: argparse.Namespace, known: tuple[int, int]) -> int:
+    """Return the year whose European rules hold: the one given, or that of the departure.
+
+    Departures before the first rules stand for weather of the past: `_USUAL_YEAR` holds.
+    """
+    if arguments.eu_year is not None:
+        return int(arguments.eu_year)
+    window = getattr(arguments, "depart_window", None) or [None]
+    times = [getattr(arguments, "depart", None), window[0], getattr(arguments, "arrive", None)]
+    given = next((time for time in times if time is not None), None)
+    year = _USUAL_YEAR if given is None else int(format_time(parse_time(given))[:4])
+    first, last = known
+    return min(year, last) if year >= first else _USUAL_YEAR
 
 
 def position_from_text(text: str) -> Position:

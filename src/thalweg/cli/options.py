@@ -167,9 +167,9 @@ def add_price_options(group: Any) -> None:
     group.add_argument(
         "--eu-year",
         type=int,
-        default=2026,
         metavar="YEAR",
-        help="year of the European Union's rules (default: 2026)",
+        help="year of the European Union's rules; default: that of the departure, or 2026 for "
+        "departures before 2024",
     )
     group.add_argument(
         "--no-eca",

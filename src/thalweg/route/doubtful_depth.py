@@ -17,7 +17,8 @@ from thalweg.route.passages_used import passages_used
 from thalweg.route.route import Route
 from thalweg.ship import Ship
 
-_STEP: Final = 1.0 * NAUTICAL_MILE
+_STEP: Final = 0.25 * NAUTICAL_MILE
+_STEP_OF_PASSAGES: Final = 2.0 * NAUTICAL_MILE
 _NOT_JUDGED: Final = 1.0 * NAUTICAL_MILE  # from land, the spacing of the data of the layer
 _NARROW: Final = 3.0 * NAUTICAL_MILE  # half width of passages that the layer does not show
 _ENDS: Final = 12.0 * NAUTICAL_MILE  # from ends and canals, where channels are dredged
@@ -86,7 +87,7 @@ def _judged(chart: Chart, route: Route, lat: FloatArray, lon: FloatArray) -> np.
     judged = shore >= _NOT_JUDGED
     for passage in passages_used(chart, route):
         if passage.half_width < _NARROW:
-            y, x, _ = densify(*passage.positions, 2.0 * _STEP)
+            y, x, _ = densify(*passage.positions, _STEP_OF_PASSAGES)
             close = np.flatnonzero(judged & (np.abs(lat - y.mean()) < np.ptp(y) + 0.2))
             for k in close:
                 judged[k] = distance(lat[k], lon[k], y, x).min() >= 2.0 * _NARROW

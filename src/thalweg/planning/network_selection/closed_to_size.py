@@ -30,6 +30,9 @@ def closed_to_size_notes(
 ) -> tuple[str, ...]:
     """Return a note on what beam, length or air draught close that would make a way shorter.
 
+    A draught that is too great for the length counts as well; one that is too great for all ships
+    has its own note.
+
     Parameters
     ----------
     seas : The seaways that the ship may use.
@@ -43,8 +46,10 @@ def closed_to_size_notes(
     tuple of str : One or none.
     """
     draught = sizes["draught"]
-    others = {**sizes, "draught": None}
-    reasons = {one: _restriction(one, others) for one in _closed_ways(seas)}
+    alone = {**dict.fromkeys(sizes, None), "draught": draught}  # what closes has its own note
+    reasons = {
+        one: _restriction(one, sizes) for one in _closed_ways(seas) if not _restriction(one, alone)
+    }
     too_small = [one for one, reason in reasons.items() if reason]
     if not too_small:
         return ()

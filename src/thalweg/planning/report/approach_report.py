@@ -86,6 +86,8 @@ def approach_limit_notes(
 
 def _over_land_notes(chart: Chart, approach: PortApproach) -> list[str]:
     lat, lon = np.array(approach.line, float).T
+    if approach.through:  # a canal is land of the coastline
+        return []
     least = _OVER_LAND[approach.quality != "computed"]
     first = most_miles_over_land(chart, lat[:2], lon[:2])
     miles = most_miles_over_land(chart, lat[1:], lon[1:])

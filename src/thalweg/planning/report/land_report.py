@@ -34,6 +34,7 @@ from thalweg.route import Route
 from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import LandClearance, least_land_clearance
 from thalweg.route.route_tables import LEG_KINDS
+from thalweg.ship import Ship
 
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
 _LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  # closed passages that save less are not mentioned
@@ -44,6 +45,13 @@ _STEP_OF_LINE: Final = 0.1 * NAUTICAL_MILE
 _BESIDE_LINE: Final = 0.5 * NAUTICAL_MILE  # positions so near the line of a passage are in it
 PASSES: Final = "Passes "  #: one on a named passage
 _SHORT_VOYAGE: Final = 200.0 * NAUTICAL_MILE  # has no note on shoals
+ALONG_COAST: Final = "Runs along a coast"  #: a note on miles of a large ship near land begins so
+_DEEP, _LONG = 12.0, 200.0  # large ships have this draught or length [m]
+_OPEN_COAST: Final = 5.0 * NAUTICAL_MILE
+_LEAST_ALONG_COAST: Final = 20.0 * NAUTICAL_MILE
+_ROUND_ENDS: Final = 30.0 * NAUTICAL_MILE
+_ROUND_PASSAGES: Final = 15.0 * NAUTICAL_MILE
+_STEP_ALONG_COAST: Final = 1.0 * NAUTICAL_MILE
 _NEAR: Final = 30.0 * NAUTICAL_MILE  # land farther from the route is not mentioned
 
 
@@ -55,6 +63,7 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
     if context.needs.limits.offing <= 0.0 and context.voyage.offing_nm == 0.0:
         return []
     notes = nearest_land_notes(context.chart, route)
+    notes += coasting_notes(context.chart, route, context.ship)
     for passage in passages_used(context.chart, route):
         facts = [
             f"line at least {passage.half_width / NAUTICAL_MILE:.2g} nm off the coastline",
@@ -86,6 +95,40 @@ def nearest_land_notes(chart: Chart, route: Route) -> list[str]:
         f"{format_position(one.lat, one.lon)}{time_of_passing(route, one.leg, one.lat, one.lon)}."
         for one, where in ((near, "in the approach of a port"), (at_sea, words))
         if one is not None and one.distance < _NEAR
+    ]
+
+
+def coasting_notes(chart: Chart, route: Route, ship: Ship) -> list[str]:
+    """Return a note on the miles that a large ship sails close along a coast; none for others.
+
+    Miles near the ends and in named passages do not count.
+    """
+    if float(ship.draught) < _DEEP and (ship.length or 0.0) < _LONG:
+        return []
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.track.lat) - 1)))
+    at_sea = np.flatnonzero(kind != LEG_KINDS.index("approach"))
+    if chart.coastline.is_empty or not len(at_sea):
+        return []
+    whole = slice(int(at_sea[0]), int(at_sea[-1]) + 2)
+    lat, lon, _leg = densify(route.track.lat[whole], route.track.lon[whole], _STEP_ALONG_COAST)
+    off = np.asarray(chart.coastline.shore_distance(lat, lon, cap=_OPEN_COAST))
+    close = off < _OPEN_COAST
+    for end in (0, -1):
+        close &= np.asarray(distance(lat, lon, lat[end], lon[end])) > _ROUND_ENDS
+    for passage in passages_used(chart, route):
+        y, x, _part = densify(*passage.positions, _STEP_ALONG_COAST)
+        for k in np.flatnonzero(close):
+            close[k] = float(np.min(distance(lat[k], lon[k], y, x))) > _ROUND_PASSAGES
+    metres = float(np.sum(np.asarray(distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))[close[1:]]))
+    if metres < _LEAST_ALONG_COAST:
+        return []
+    nearest = int(np.argmin(np.where(close, off, np.inf)))
+    place = format_position(float(lat[nearest]), float(lon[nearest]))
+    return [
+        f"{ALONG_COAST} for {metres / NAUTICAL_MILE:.0f} nm nearer than "
+        f"{_OPEN_COAST / NAUTICAL_MILE:g} nm, {off[nearest] / NAUTICAL_MILE:.1f} nm at {place}, "
+        "outside named passages: large ships keep farther off an open coast, laden "
+        "tankers by the rules of many states. To keep off, plan with --offing, such as 5 or 10."
     ]
 
 

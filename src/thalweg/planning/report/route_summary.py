@@ -151,7 +151,7 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     basis = f" (by {basis})" if basis else ""
     if route.cost is None:
         paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
-        return f"not known: no price of fuel or time{paid}"
+        return f"not known: {_why_unknown(route.prices)}{paid}"
     word = "of it " if route.currency == "USD" else "without "
     paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
     prices = prices_text(route.prices)
@@ -161,6 +161,15 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
         prices += "; no dearer fuel in control areas, where at most 0.10 % of sulphur is allowed"
     amount = amount_text(route.cost, route.currency) + _parts_text(route)
     return f"{amount}{paid}" + (f"; {prices}" if prices else "")
+
+
+def _why_unknown(prices: Mapping[str, Any]) -> str:
+    """Return why the cost of a route is not known."""
+    charges = prices.get("european_charges") or {}
+    priced = (prices.get("fuel_per_t") or {}).get("value") is not None
+    if priced and charges.get("voyage_share") and charges.get("euro_price"):
+        return "the FuelEU penalty of this fuel is not known; leave out the price of the euro"
+    return "no price of fuel or time"
 
 
 def _parts_text(route: Route) -> str:
@@ -218,7 +227,7 @@ def _charges_texts(charges: Mapping[str, Any]) -> list[str]:
     """Return which charges of the European Union count, and which do not for want of a price."""
     if not charges.get("voyage_share"):
         return []
-    share = f"on {100.0 * charges['voyage_share']:.0f} %"
+    share = f"on {100.0 * charges['voyage_share']:.0f} % by the rules of {charges['year']}"
     missing = charges["not_counted"]
     if len(missing) != 1:
         return [f"EU charges {share}"]
