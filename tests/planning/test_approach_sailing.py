@@ -258,7 +258,7 @@ def test_slow_ships_keep_their_own_speed_in_approaches():
     slow = Ship.simple(speed_kn=7.0)
     assert approach_speed(slow, 0) == pytest.approx(7.0 * KNOT)
     assert approach_speed(ship(), len(ship().speeds) - 1) == MAX_APPROACH_SPEED
-    field = SimpleNamespace(speeds=[np.nan])
+    field = SimpleNamespace(speeds=[np.nan], approach_speed=MAX_APPROACH_SPEED)
     assert approach_speed(field, 0) == MAX_APPROACH_SPEED
     line = approach_of("Rotterdam").line
     route = thalweg.evaluate(line, ship=slow, sea=Sea.calm(), chart=chart(), depart=DEPART)

@@ -64,6 +64,16 @@ def test_only_the_ends_of_a_voyage_join_lines(world):
     assert not ends[2].is_port
 
 
+def test_short_voyages_stay_in_their_sound(world):
+    """The sound of Gisund: the approach of Finnsnes leads out to sea."""
+    ends = resolve_places((69.30, 18.0), [], (69.45, 18.1), world)
+    assert [end.approach for end in ends] == [None, None]
+    assert resolve_places((69.30, 18.0), [], "Tromso", world)[0].approach is None
+    near, far = (54.22, -130.42), (54.4, -133.0)
+    assert resolve_places(ROADS_OF_PRINCE_RUPERT, [], near, world)[0].approach is None
+    assert resolve_places(ROADS_OF_PRINCE_RUPERT, [], far, world)[0].approach is not None
+
+
 def test_a_position_on_land_is_moved_and_joins(world):
     end = resolve_places((54.31, -130.34), [], "Sydney", world)[0]
     assert end.approach.port.label == "Prince Rupert, CA"

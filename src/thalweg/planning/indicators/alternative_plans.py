@@ -16,7 +16,11 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
 from thalweg.core.units import HOUR
 from thalweg.network.history.history_corridor import HistoryCorridor
-from thalweg.planning.indicators.candidate_routes import STOPPED, berth_to_berth_candidates
+from thalweg.planning.indicators.candidate_routes import (
+    STOPPED,
+    berth_to_berth_candidates,
+    longest_notes,
+)
 from thalweg.planning.indicators.route_choices import (
     SLOWER,
     RouteChoice,
@@ -227,6 +231,7 @@ def alternative_plans(
     routes, notes = berth_to_berth_candidates(context, ends)
     kept = _kept(routes, limits)
     chosen = _chosen(kept, most, context.chart)
+    notes += longest_notes(context, routes)
     notes += unchosen_notes(context.chart, routes, chosen, partial(_broken, limits))
     warnings = [
         [note for note in route_warnings(context, one) if not note.startswith(NEAREST_LAND)]

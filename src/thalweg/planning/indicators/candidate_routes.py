@@ -111,10 +111,10 @@ def _feasible_candidates(
             break
     found = found or [(routes[:1], notes)]
     kept, notes = min(found, key=lambda one: min(route.time_h for route in one[0]))
-    return kept, list(dict.fromkeys((*context.needs.notes, *notes, *_longest_notes(context, kept))))
+    return kept, list(dict.fromkeys((*context.needs.notes, *notes)))
 
 
-def _longest_notes(context: PlanningContext, routes: Sequence[Route]) -> list[str]:
+def longest_notes(context: PlanningContext, routes: Sequence[Route]) -> list[str]:
     """Return a note on how long routes take at most, where the voyage has no time of arrival."""
     if context.voyage.arrive_by is not None or len(context.ship.speeds) < 2 or len(routes) < 2:
         return []

@@ -36,6 +36,9 @@ MAX_SNAP_PORT = 60_000.0
 NOT_REACHED: Final = "Does not reach"  #: a note on a port far from the end of the route begins so
 #: A port moved farther than this [m] is not reached: the end of the route has no port's name.
 _REACHED: Final = 2.0 * NAUTICAL_MILE
+#: Voyages shorter than this [m], or than so many lengths of the approach, do not follow one.
+_SHORT_VOYAGE: Final = 20.0 * NAUTICAL_MILE
+_LENGTHS_OF_APPROACH: Final = 2.0
 
 
 @dataclass(frozen=True)
@@ -276,19 +279,25 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         others.remove(place)
         with errors_about(entry), errors_on_swapped_degrees(place, others, chart):
             ends.append(resolve_endpoint(place, chart, what))
-    ends[0], ends[-1] = (along_approach(end, chart) for end in (ends[0], ends[-1]))
+    apart = float(distance(*ends[0].origin, *ends[-1].origin))
+    ends[0], ends[-1] = (along_approach(end, chart, apart) for end in (ends[0], ends[-1]))
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)
     return ends
 
 
-def along_approach(end: Endpoint, chart: Chart) -> Endpoint:
-    """Return the end of a voyage at a position in a harbour by the approach that passes it."""
+def along_approach(end: Endpoint, chart: Chart, apart: float) -> Endpoint:
+    """Return the end of a voyage at a position in a harbour by the approach that passes it.
+
+    Parameters
+    ----------
+    apart : Distance between the ends [m]; where it is short the ship may not go to sea at all.
+    """
     if end.is_port:
         return end
     approach = joined_approach(end.lat, end.lon, chart)
-    if approach is None:
+    if approach is None or apart < max(_SHORT_VOYAGE, _LENGTHS_OF_APPROACH * approach.length):
         return end
     ways = [
         way
