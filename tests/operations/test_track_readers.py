@@ -203,3 +203,21 @@ def test_scattered_outliers_never_survive(bad, order, far):
     log = read_tracks(frame.iloc[rows])
     assert log.lat == pytest.approx(clean.lat.to_numpy())
     assert log.removed.get("out of reach at the highest speed", 0) == len(bad)
+
+
+def test_a_long_stretch_out_of_reach_is_left_out():
+    """A receiver that was wrong for half an hour: no part of the track."""
+    frame = straight(120)
+    clean = frame.drop(index=range(40, 70))
+    frame.loc[range(40, 70), "lat"] -= 20.0
+    log = read_tracks(frame)
+    assert log.lat == pytest.approx(clean.lat.to_numpy())
+    assert log.removed == {"out of reach at the highest speed": 30}
+
+
+def test_positions_at_0_n_0_e_are_left_out():
+    frame = straight(60)
+    frame.loc[[0, 1, 2, 59], ["lat", "lon"]] = 0.0
+    log = read_tracks(frame)
+    assert len(log.time) == 56
+    assert log.removed == {"at 0 N 0 E, which receivers write without a fix": 4}

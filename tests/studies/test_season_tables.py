@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from matplotlib.image import imread
 
+from thalweg.core.errors import InputError
 from thalweg.studies import Study, study_run, summarise_study
 from thalweg.studies.season_plots import draw_heat_map
 from thalweg.studies.season_tables import (
@@ -17,7 +18,7 @@ from thalweg.studies.season_tables import (
 )
 from thalweg.studies.study_parts import read_parts
 
-VOYAGE = {"ship": "gunnerus", "voyage": {"start": "A", "goal": "B"}}
+VOYAGE = {"ship": "gunnerus", "voyage": {"start": "A", "goal": "B", "depart": "2026-01-01"}}
 
 
 def departures(count: int, step_h: float = 12.0) -> list[str]:
@@ -183,3 +184,11 @@ def test_percentiles_by_month_are_those_of_the_departures(tmp_path, monkeypatch)
     if lost == study.size:  # one part
         return
     assert summarise_study(tmp_path).left == lost
+
+
+def test_a_study_with_an_impossible_voyage_is_refused_before_any_is_planned(tmp_path, monkeypatch):
+    pytest.importorskip("pyarrow", reason="the extra 'studies' is not installed")
+    study = Study.from_dict(VOYAGE | {"axes": {"speed_kn": [12, "x"]}})
+    monkeypatch.setattr(study_run, "run_rows", lambda rows, folder: pytest.fail("planned"))
+    with pytest.raises(InputError, match="speed_kn must be a number, not 'x'"):
+        study_run.run_study(study, tmp_path)

@@ -22,6 +22,7 @@ from typing import Any
 
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, taken_lock
+from thalweg.planning.voyage import Voyage
 from thalweg.studies.row_runner import run_rows, ship_of_request
 from thalweg.studies.study import Study, StudyRow, canonical_json
 from thalweg.studies.study_parts import read_parts, require_parquet, write_part, write_study
@@ -146,6 +147,7 @@ def _run_missing(
     """Run the rows without a result by some workers, or a scheduler, in chunks."""
     workers, scheduler, chunk = how
     rows = list({row.id: row for row in study.rows()}.values())
+    _check_voyages(study, rows)
     _check_single_ship(study, rows)
     known = set(read_parts(folder, ["id"])["id"])
     if known and known.isdisjoint(row.id for row in rows):
@@ -180,6 +182,12 @@ def has_route(result: Mapping[str, Any]) -> bool:
     """Return whether a row has a route that keeps the limits."""
     feasible = result.get("feasible")
     return result["refusal"] is None and (feasible is None or bool(feasible))
+
+
+def _check_voyages(study: Study, rows: list[StudyRow]) -> None:
+    """Raise the error of a voyage that is none, before any is planned; a sample may draw some."""
+    for row in rows if not study.sample else ():
+        Voyage.from_dict(row.request["voyage"])
 
 
 def _check_single_ship(study: Study, rows: list[StudyRow]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_calibration import mean_speeds
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 _MAX_BISECTIONS = 40
+_ROUNDING = 1.01  # speeds are written with one or two decimals
 _MAX_SPEED = 25.0  #: highest speed through water considered at a power [m/s]
 
 
@@ -76,10 +78,24 @@ def ordered_settings(
             continue
         loaded = ship.with_load_factor(load_factor)
         if speed_kn is not None:
+            _check_ordered_speed(loaded, speed_kn)
             loaded = loaded.with_speeds([speed_kn * KNOT])
         setting = int(np.argmin(np.abs(loaded.speeds - wanted[own][0])))
         settings[SAILING_KINDS[index]] = (loaded, setting)
     return settings
+
+
+def _check_ordered_speed(ship: Ship, speed_kn: float) -> None:
+    """Raise `InputError` for a speed above the greatest that the ship can order."""
+    top = ship.greatest_order() / KNOT
+    if speed_kn <= top * _ROUNDING:
+        return
+    raise InputError(
+        f"The ship {ship.name!r} cannot order {speed_kn:g} kn.",
+        f"Her greatest speed at this load is {top:.1f} kn.",
+        "Order at most that, or leave the speed out.",
+        field="speed_kn",
+    )
 
 
 def speeds_at_measured_power(

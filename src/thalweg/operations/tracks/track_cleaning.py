@@ -139,6 +139,7 @@ def clean_track(
     for reason, step in (
         ("without a readable time", _has_time),
         ("without a position on the globe", _has_position),
+        ("at 0 N 0 E, which receivers write without a fix", _has_fix),
     ):
         keep = step(raw)
         removed[reason] = int((~keep).sum())
@@ -189,6 +190,10 @@ def _has_time(raw: RawTrack) -> NDArray[np.bool_]:
     return np.isfinite(raw.time)
 
 
+def _has_fix(raw: RawTrack) -> NDArray[np.bool_]:
+    return np.asarray((raw.lat != 0.0) | (raw.lon != 0.0))
+
+
 def _has_position(raw: RawTrack) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
         return np.asarray((np.abs(raw.lat) <= 90.0) & (np.abs(raw.lon) <= 180.0 + 1e-9))
@@ -225,11 +230,12 @@ def _reachable_positions(
         keep[start:end] = _reachable(raw, end - 1, first, rules)
         first = start if keep[start] else first
     last = runs[anchor][1] - 1
-    for start, end, whole in runs[anchor + 1 :]:
+    for number, (start, end, whole) in enumerate(runs[anchor + 1 :], anchor + 1):
         fits = _reachable(raw, last, start, rules)
-        keep[start:end] = whole or fits
-        jumps[start] = whole and not fits
-        last = end - 1 if keep[start] else last
+        kept = fits or (whole and not _is_passed(raw, last, runs[number : number + 2], rules))
+        keep[start:end] = kept
+        jumps[start] = kept and not fits
+        last = end - 1 if kept else last
     return keep, jumps
 
 
@@ -241,6 +247,22 @@ def _too_fast(raw: RawTrack, rules: CleaningRules) -> NDArray[np.bool_]:
     ends = raw.lat[near], raw.lon[near], raw.lat[near + 1], raw.lon[near + 1]
     fast[near] = distance(*ends) > rules.fastest * np.diff(raw.time)[near]
     return np.asarray(fast)
+
+
+def _is_passed(
+    raw: RawTrack, last: int, runs: list[tuple[int, int, bool]], rules: CleaningRules
+) -> bool:
+    """Return whether the track goes on after a run, which is out of reach, as if without it.
+
+    Parameters
+    ----------
+    last : The position before the run.
+    runs : The run and the next one, where there is one.
+    """
+    if len(runs) < 2:
+        return False
+    (_start, end, _whole), (after, _end, _long) = runs
+    return _reachable(raw, last, after, rules) and not _reachable(raw, end - 1, after, rules)
 
 
 def _reachable(raw: RawTrack, i: int, j: int, rules: CleaningRules) -> bool:
