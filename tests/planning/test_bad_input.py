@@ -321,6 +321,11 @@ def test_distances_refuse_what_is_no_place(place):
         sea_distance(place, "Rotterdam")
 
 
+def test_one_via_point_of_a_distance_needs_no_list():
+    one = sea_distance("Hull", "Rotterdam", via="Dover")
+    assert one.nm == sea_distance("Hull", "Rotterdam", via=["Dover"]).nm
+
+
 def test_distances_refuse_the_name_of_a_ship():
     with pytest.raises(InputError, match="which is not a Ship"):
         sea_distance("Hamburg", "Rotterdam", ship="handysize-bulker")

@@ -70,3 +70,11 @@ def test_a_plan_names_it_before_other_distances_from_land_are_tried():
 def test_where_there_is_a_way_nothing_is_named():
     ends = resolve_places("Istanbul", (), "Odesa", world_chart())
     assert closed_way_error(Seaways.of_chart(world_chart(), ()), ends, {}) is None
+
+
+def test_a_canal_that_is_too_shallow_for_the_length_is_named():
+    reefer = Ship.simple(speed_kn=18.0, draught_m=8.5, length_m=200.0, breadth_m=24.0)
+    way = sea_distance("Hamburg", "Kotka", ship=reefer)
+    assert any("8.18 m allowed for 200 m of length" in note for note in way.notes)
+    shorter = Ship.simple(speed_kn=18.0, draught_m=8.5, length_m=164.0, breadth_m=24.0)
+    assert sea_distance("Hamburg", "Kotka", ship=shorter).canals == ("Kiel Canal",)

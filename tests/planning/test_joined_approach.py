@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 
+from thalweg import Sea, Ship, Voyage, evaluate, plan
 from thalweg.chart.ports import PORTS
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.joined_approach import joined_approach
 from thalweg.planning.request.voyage_endpoints import resolve_places
 from thalweg.planning.sea_distance import sea_distance, world_chart
+from thalweg.route import RouteFileOptions, write_route_files
+from thalweg.route.route_tables import LEG_KINDS
 
 ROADS_OF_PRINCE_RUPERT = 54.312, -130.34
 
@@ -79,3 +82,16 @@ def test_a_position_on_land_is_moved_and_joins(world):
     assert end.approach.port.label == "Prince Rupert, CA"
     assert "moved 0.1 nm" in end.notice
     assert end.name == "54.3100N 130.3400W"
+
+
+@pytest.mark.slow
+def test_the_route_of_a_ship_in_a_harbour_is_evaluated_as_planned(world, tmp_path):
+    """The joint to the line is sailed at the speed of approaches by plan and evaluation."""
+    ship = Ship.load("handysize-bulker")
+    voyage = Voyage(start=ROADS_OF_PRINCE_RUPERT, goal=(54.4, -133.2), depart="2026-06-01")
+    found = plan(voyage, ship=ship, sea=Sea.calm(), chart=world, proof=0.0)
+    assert found.best.legs["leg_kind"][0] == LEG_KINDS.index("approach")
+    write_route_files(found.best, tmp_path, "route", RouteFileOptions())
+    again = evaluate(tmp_path / "route.csv", ship=ship, sea=Sea.calm(), chart=world)
+    assert again.time_h == pytest.approx(found.best.time_h, rel=1e-4)
+    assert again.distance_nm == pytest.approx(found.best.distance_nm, rel=1e-4)

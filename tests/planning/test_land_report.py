@@ -11,13 +11,19 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, evaluate
 from thalweg.chart.passages import Passage
-from thalweg.planning.report.land_report import closed_passage_notes, nearest_land_notes
+from thalweg.planning.report.land_report import (
+    closed_passage_notes,
+    coasting_notes,
+    nearest_land_notes,
+    unknown_stream_notes,
+)
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.request.chart_restrictions import exclude_closed_canals
 from thalweg.planning.request.offing_choice import restrict_passages
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.route_tables import LEG_KINDS
+from thalweg.sea.standard_names import CURRENT
 
 TANKER = Ship.load("kvlcc2")  # draught 20.8 m
 BULKER = Ship.simple(speed_kn=12.0, draught_m=9.5, length_m=190.0)
@@ -120,3 +126,39 @@ def test_the_nearest_land_at_sea_is_the_figure_of_the_table():
     assert inside.startswith("Close to land: 0.2 nm off in a passage (Narrow Strait), from 0.0170N")
     farther = replace(plain, legs={**plain.legs, "leg_kind": kind[::-1]})
     assert "approach" not in nearest_land_notes(chart, farther)[0]
+
+
+PONDOLAND_TO_AGULHAS = [(-29.0, 32.4), (-31.31, 30.08), (-32.8, 28.6), (-35.3, 20.0), (-36.0, 15.0)]
+
+
+@pytest.mark.parametrize(("ship", "stated"), [(TANKER, True), (BULKER, False)])
+def test_a_large_ship_along_an_open_coast_is_stated(world, ship, stated):
+    route = evaluate(
+        PONDOLAND_TO_AGULHAS, ship=ship, sea=Sea.calm(), chart=world, depart="2026-01-01"
+    )
+    notes = coasting_notes(world, route, ship)
+    assert len(notes) == stated
+    for note in notes:
+        assert note.startswith("Runs along a coast for ")
+        assert "--offing" in note and count_of_dangers([note]) == 1
+
+
+def test_a_large_ship_off_the_coast_has_no_such_note(world):
+    off = [(-29.0, 34.0), (-33.0, 31.0), (-36.0, 22.0), (-36.0, 15.0)]
+    route = evaluate(off, ship=TANKER, sea=Sea.calm(), chart=world, depart="2026-01-01")
+    assert coasting_notes(world, route, TANKER) == []
+
+
+@pytest.mark.parametrize(("currents", "stated"), [(False, True), (True, False)])
+def test_a_passage_with_strong_streams_is_stated_where_no_current_is_known(world, currents, stated):
+    functions = {name: lambda t, y, x: 0.1 + 0.0 * t for name in CURRENT.pair}
+    sea = Sea.from_functions(functions) if currents else Sea.calm()
+    route = evaluate(
+        [(58.66, -2.7), (58.70, -3.1), (58.69, -3.6)],
+        ship=BULKER, sea=sea, chart=world, depart="2026-01-01",
+    )  # fmt: skip
+    notes = unknown_stream_notes(world, route, sea)
+    assert len(notes) == stated
+    for note in notes:
+        assert "Pentland Firth has tidal streams to 12 kn" in note
+        assert count_of_dangers([note]) == 1

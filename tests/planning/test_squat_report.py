@@ -6,6 +6,7 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
 from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.provenance import given_route_warnings
+from thalweg.planning.report.squat_report import touches_bottom
 from thalweg.sea import standard_names as nm
 from thalweg.ship.performance_sheet import performance_sheet
 
@@ -84,3 +85,17 @@ def test_plans_state_it():
     assert danger_first(found.notes)[0].startswith(
         "The clearance is that at rest: with a squat of about 1.1"
     )
+
+
+def test_a_route_on_which_squat_puts_the_ship_aground_is_no_success():
+    """At 12 kn she squats about 1.1 m over a bar with 0.7 m under her keel at rest."""
+    ship = Ship.from_dict(TANKER | {"hull": TANKER["hull"] | {"draught_m": 12.3}})
+    _notes, route = notes_of(ship, min_ukc=0.5)
+    assert route.feasible and touches_bottom(route, ship)
+    _notes, slow = notes_of(ship, speed_kn=6.0, min_ukc=0.5)
+    assert not touches_bottom(slow, ship)
+    shoal = Sea.from_functions({nm.BED_DEPTH: lambda time, lat, lon: 2.0 + 0.0 * lat})
+    ashore = evaluate(
+        LINE, ship=ship, sea=shoal, chart=CHART, depart="2026-03-10T03:00Z", strict=False
+    )
+    assert not ashore.feasible and not touches_bottom(ashore, ship)  # stated as a limit

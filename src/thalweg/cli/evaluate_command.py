@@ -54,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.planning.report.output_files import write_route
     from thalweg.planning.report.provenance import given_route_warnings
     from thalweg.planning.report.route_summary import route_items
+    from thalweg.planning.report.squat_report import touches_bottom
     from thalweg.route import evaluate
 
     option_values.prepare_output_folder(arguments)
@@ -86,4 +87,4 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         items = route_items(route, sea=sea, chart=chart, ship=ship, notes=notes)
         print_route(route, items, notes, files, verbose=arguments.verbose)
-    return SUCCESS if route.feasible else NO_ROUTE
+    return SUCCESS if route.feasible and not touches_bottom(route, ship) else NO_ROUTE

@@ -125,9 +125,9 @@ def print_passage_alternatives(console: Any, plan: Plan) -> None:
     table = new_table(title, columns, left=("without", "by"), wrap="by")
     for row in plan.passage_alternatives:
         table.add_row(
-            ", ".join(titles.get(name, name) for name in row["without"]) or "-",
+            "; ".join(titles.get(name, name) for name in row["without"]) or "-",
             f"{row['distance_nm']:,.0f}", f"{row['time_h']:,.1f}", f"{row['canal_dues_usd']:,.0f}",
-            ", ".join(titles.get(name, name) for name in row["passes"]),
+            "; ".join(titles.get(name, name) for name in row["passes"]),
         )  # fmt: skip
     console.print(table)
     console.print("'thalweg alternatives' plans such ways, with their fuel and cost.")

@@ -216,7 +216,8 @@ def sea_distance(
     """
     chart = world_chart() if chart is None else chart
     check_offing(offing_nm)
-    ends = resolve_places(start, via, goal, chart)
+    vias = (via,) if isinstance(via, str) else via
+    ends = resolve_places(start, vias, goal, chart)
     sizes: dict[str, float | None] = {"draught": None}
     asked = (avoid,) if isinstance(avoid, str) else tuple(avoid or ())
     closed = SMALL_CANALS if avoid is None else asked

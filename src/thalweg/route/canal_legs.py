@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.chart.approaches import LONGEST_JOINT
 from thalweg.chart.canal_parts import (
     canal_part,
     first_legs_of_transits,
@@ -20,7 +21,7 @@ from thalweg.chart.canal_parts import (
 from thalweg.chart.canals import Canal, canals_with_dues
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.errors import ThalwegError
-from thalweg.core.geodesy import Position, direct, inverse
+from thalweg.core.geodesy import Position, direct, distance, inverse
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import WAVE_NORTH, WAVE_PERIOD
 from thalweg.ship.conditions import Conditions
@@ -185,12 +186,23 @@ def _needed_along_approaches(track: Track, chart: Chart) -> NDArray[np.bool_]:
     """
     assert chart.approaches is not None  # by the caller
     along = chart.approaches.legs(track.lat, track.lon)
+    _add_joints(along, track, chart)
     at_ends = np.logical_and.accumulate(along) | np.logical_and.accumulate(along[::-1])[::-1]
     k = np.flatnonzero(along & ~at_ends)
     if len(k):
         legs = track.lat[k], track.lon[k], track.lat[k + 1], track.lon[k + 1]
         along[k] = chart.legs_blocked(*legs)
     return along
+
+
+def _add_joints(along: NDArray[np.bool_], track: Track, chart: Chart) -> None:
+    """Add the first and last leg where these lead over water to an approach that is followed."""
+    for leg, beside in ((0, 1), (len(along) - 1, len(along) - 2)):
+        if len(along) < 2 or along[leg] or not along[beside]:
+            continue
+        ends = [(track.lat[k], track.lon[k]) for k in (leg, leg + 1)]
+        if float(distance(*ends[0], *ends[1])) <= LONGEST_JOINT:
+            along[leg] = not bool(chart.legs_blocked(*ends[0], *ends[1]))
 
 
 def _with_canal_parts(legs: CanalLegs, track: Track) -> CanalLegs:

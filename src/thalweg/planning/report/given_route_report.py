@@ -26,7 +26,7 @@ from thalweg.planning.request.offing_choice import (
     default_offing,
     size_restriction,
 )
-from thalweg.planning.request.swapped_degrees import misplaced_name_notes
+from thalweg.planning.request.swapped_degrees import misplaced_name_notes, swap_notice
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
 from thalweg.route.carried_extensions import visits_of
@@ -63,6 +63,8 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     if not chart.passages or len(lat) < 2:
         return []
     notes = misplaced_name_notes(route.track.extensions.names)
+    swapped = [swap_notice(float(lat[k]), float(lon[k]), chart) for k in (0, -1)]
+    notes += swapped[:1] if all(swapped) else []
     notes += _turns_back(route, chart) + _near_land(route, chart, ship)
     in_approach = _in_approach(route, chart)
     legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach)]

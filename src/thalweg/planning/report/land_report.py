@@ -34,6 +34,9 @@ from thalweg.route import Route
 from thalweg.route.passages_used import passages_used
 from thalweg.route.referee.land_clearance import LandClearance, least_land_clearance
 from thalweg.route.route_tables import LEG_KINDS
+from thalweg.sea import Sea
+from thalweg.sea.fill_policies import is_calm_layer
+from thalweg.sea.standard_names import CURRENT
 from thalweg.ship import Ship
 
 _PIECE: Final = 20.0 * NAUTICAL_MILE  # routes are split so to find where a passage would leave them
@@ -45,6 +48,7 @@ _STEP_OF_LINE: Final = 0.1 * NAUTICAL_MILE
 _BESIDE_LINE: Final = 0.5 * NAUTICAL_MILE  # positions so near the line of a passage are in it
 PASSES: Final = "Passes "  #: one on a named passage
 _SHORT_VOYAGE: Final = 200.0 * NAUTICAL_MILE  # has no note on shoals
+UNKNOWN_STREAM: Final = "Strong streams are not known"  #: a note on such a passage begins so
 ALONG_COAST: Final = "Runs along a coast"  #: a note on miles of a large ship near land begins so
 _DEEP, _LONG = 12.0, 200.0  # large ships have this draught or length [m]
 _OPEN_COAST: Final = 5.0 * NAUTICAL_MILE
@@ -64,6 +68,7 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
         return []
     notes = nearest_land_notes(context.chart, route)
     notes += coasting_notes(context.chart, route, context.ship)
+    notes += unknown_stream_notes(context.chart, route, context.sea)
     for passage in passages_used(context.chart, route):
         facts = [
             f"line at least {passage.half_width / NAUTICAL_MILE:.2g} nm off the coastline",
@@ -95,6 +100,19 @@ def nearest_land_notes(chart: Chart, route: Route) -> list[str]:
         f"{format_position(one.lat, one.lon)}{time_of_passing(route, one.leg, one.lat, one.lon)}."
         for one, where in ((near, "in the approach of a port"), (at_sea, words))
         if one is not None and one.distance < _NEAR
+    ]
+
+
+def unknown_stream_notes(chart: Chart, route: Route, sea: Sea) -> list[str]:
+    """Return a note on each passage with strong streams, where the data have no currents."""
+    data = [layer.variables for layer in sea.layers if not is_calm_layer(layer)]
+    if any(set(CURRENT.pair) <= variables for variables in data):
+        return []
+    return [
+        f"{UNKNOWN_STREAM}: {passage.name} has {passage.note}, and the data have no currents. "
+        f"Pass near slack water by the pilot book, or plan with --avoid {passage.name!r}."
+        for passage in passages_used(chart, route)
+        if "stream" in passage.note
     ]
 
 

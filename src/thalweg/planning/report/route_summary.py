@@ -49,6 +49,7 @@ _MOST: Final = 0.99  # of the waits at one place, so that no other is named
 _TENTH: Final = 0.1  # by which waves in a wait are higher to be named [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SEE_NOTES: Final = {  # first words of notes on what the referee does not check, and its name
+    SQUAT_UNCOUNTED: "squat",
     CROSSES_SHOAL: "a charted shoal",
     AGAINST_TRAFFIC: "traffic lanes",
     OVER_LAND: "an approach over land",

@@ -59,6 +59,12 @@ def least_water_with_squat(route: Route, ship: Ship) -> LeastWaterWithSquat | No
     return LeastWaterWithSquat(float(left[worst]), float(squat[worst]), int(known[worst]))
 
 
+def touches_bottom(route: Route, ship: Ship) -> bool:
+    """Return whether squat puts a ship on the bottom somewhere on a route."""
+    least = least_water_with_squat(route, ship)
+    return least is not None and least.clearance < -_TOUCHES
+
+
 def squat_notes(route: Route, ship: Ship, min_ukc: float) -> list[str]:
     """Return a note where squat takes the clearance below the required one.
 
