@@ -116,3 +116,10 @@ def test_a_sea_without_currents_is_told(folder, tmp_path, capsys):
     ).to_netcdf(path)
     assert main(asked(folder, "--sea", str(path))) in (2, 3)
     assert capsys.readouterr().err.startswith("error:")
+
+
+def test_an_order_that_no_such_ship_obeys_is_refused(folder, capsys):
+    more = ("--calm", "--ship", "hopper-dredger", "--speed", "99")
+    assert main(asked(folder, *more)) == 2
+    said = capsys.readouterr().err
+    assert "cannot order 99 kn" in said and "Her greatest speed at this load is 1" in said

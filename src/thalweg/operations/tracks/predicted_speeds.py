@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 _MAX_BISECTIONS = 40
-_ROUNDING = 1.01  # speeds are written with one or two decimals
+_MOST_ABOVE = 1.5  # times its greatest speed a ship may be compared at
 _MAX_SPEED = 25.0  #: highest speed through water considered at a power [m/s]
 
 
@@ -86,9 +86,9 @@ def ordered_settings(
 
 
 def _check_ordered_speed(ship: Ship, speed_kn: float) -> None:
-    """Raise `InputError` for a speed above the greatest that the ship can order."""
+    """Raise `InputError` for a speed far above the greatest that the ship can order."""
     top = ship.greatest_order() / KNOT
-    if speed_kn <= top * _ROUNDING:
+    if speed_kn <= top * _MOST_ABOVE:
         return
     raise InputError(
         f"The ship {ship.name!r} cannot order {speed_kn:g} kn.",

@@ -49,7 +49,6 @@ _MOST: Final = 0.99  # of the waits at one place, so that no other is named
 _TENTH: Final = 0.1  # by which waves in a wait are higher to be named [m]
 _LEAST_PERCENT: Final = 0.5  # smaller shares of the way are not named
 _SEE_NOTES: Final = {  # first words of notes on what the referee does not check, and its name
-    SQUAT_UNCOUNTED: "squat",
     CROSSES_SHOAL: "a charted shoal",
     AGAINST_TRAFFIC: "traffic lanes",
     OVER_LAND: "an approach over land",
@@ -166,20 +165,16 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
 
 def _why_unknown(prices: Mapping[str, Any]) -> str:
     """Return why the cost of a route is not known."""
-    charges = prices.get("european_charges") or {}
-    priced = (prices.get("fuel_per_t") or {}).get("value") is not None
-    if priced and charges.get("voyage_share") and charges.get("euro_price"):
+    charges, fuel = (prices.get(key) or {} for key in ("european_charges", "fuel_per_t"))
+    if fuel.get("value") is not None and charges.get("voyage_share") and charges["euro_price"]:
         return "the FuelEU penalty of this fuel is not known; leave out the price of the euro"
     return "no price of fuel or time"
 
 
 def _parts_text(route: Route) -> str:
     """Return the parts of a cost but canal dues, where there are two or more."""
-    known = {
-        name: value
-        for name, value in route.cost_parts.items()
-        if value is not None and value >= 0.5 and name != "canal dues"
-    }
+    parts = [(n, v) for n, v in route.cost_parts.items() if v is not None and n != "canal dues"]
+    known = {name: value for name, value in parts if value >= 0.5}
     if len(known) < 2:
         return ""
     return f" ({', '.join(f'{name} {value:,.0f}' for name, value in known.items())})"
