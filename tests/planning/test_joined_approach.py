@@ -77,6 +77,14 @@ def test_short_voyages_stay_in_their_sound(world):
     assert resolve_places(ROADS_OF_PRINCE_RUPERT, [], far, world)[0].approach is not None
 
 
+def test_a_ship_on_the_river_of_her_port_is_not_in_it(world):
+    """Off Rimouski she is on the line of Montreal, and 260 miles from it."""
+    ends = resolve_places((48.6, -68.55), [], "Montreal", world)
+    assert not ends[0].is_port and ends[1].is_port
+    way = sea_distance((48.6, -68.55), "Montreal", draught_m=8.0)
+    assert 240.0 < way.nm < 320.0
+
+
 def test_a_position_on_land_is_moved_and_joins(world):
     end = resolve_places((54.31, -130.34), [], "Sydney", world)[0]
     assert end.approach.port.label == "Prince Rupert, CA"

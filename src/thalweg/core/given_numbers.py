@@ -25,7 +25,7 @@ def to_number(value: object) -> float:
         return math.nan
 
 
-def finite_number(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
+def finite_number(text: object, what: str, remedy: str) -> float:
     """Return a finite number, or raise `InputError` naming what it should have been."""
     value = to_number(text)
     if not math.isfinite(value):

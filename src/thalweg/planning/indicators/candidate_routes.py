@@ -118,11 +118,10 @@ def longest_notes(context: PlanningContext, routes: Sequence[Route]) -> list[str
     """Return a note on how long routes take at most, where the voyage has no time of arrival."""
     if context.voyage.arrive_by is not None or len(context.ship.speeds) < 2 or len(routes) < 2:
         return []
-    hours = _LONGER * min(route.time_h for route in routes)
     return [
-        f"Least fuel and the other figures are of routes of at most {hours:.1f} h at sea, "
-        f"{_LONGER:g} times the fastest (the cheapest may take longer): with more time less fuel "
-        "is possible. Set another limit by the latest arrival (--arrive-by)."
+        f"Least fuel and the other figures are of routes that take at most {_LONGER:g} times as "
+        "long at sea as the fastest (the cheapest may take longer): with more time less fuel is "
+        "possible. Set another limit by the latest arrival (--arrive-by)."
     ]
 
 

@@ -346,6 +346,7 @@ def check_distinct(start: Endpoint, goal: Endpoint) -> None:
     """Raise `InputError` if two end points are the same place."""
     ways = start.approach, goal.approach
     same_port = ways[0] is not None and ways[1] is not None and ways[0].port == ways[1].port
+    same_port &= start.is_port and goal.is_port  # positions beside the approach of one port differ
     apart = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     if same_port or (apart < 1.0 and not (start.approach and goal.approach)):
         raise InputError(
