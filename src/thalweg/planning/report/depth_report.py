@@ -9,14 +9,16 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.depth.global_depth import NAME, coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
-from thalweg.core.geodesy import format_position_minutes
+from thalweg.core.geodesy import distance, format_position_minutes
 from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.land_report import time_of_passing
 from thalweg.route import Route
 from thalweg.route.doubtful_depth import is_too_shallow, positions_with_legs
 from thalweg.ship import Ship
 
-_MOST_LEGS: Final = 5
+_MOST_PLACES: Final = 5
+_SAME_PLACE: Final = 5.0 * NAUTICAL_MILE  # shallower water so near is the same place
 CHECK_DEPTH: Final = "Check the depth"  #: a note on legs that may be too shallow begins so
 CROSSES_SHOAL: Final = "Crosses"  #: a note on a named shoal area begins so
 
@@ -45,28 +47,29 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     depth = np.asarray(coarse_depth(lat, lon))
     shallow = is_too_shallow(chart, route, ship, depth < required)
     if shallow.any():
-        notes.append(_shallow_legs(route, depth, np.flatnonzero(shallow), line, required))
+        notes.append(_shallow_places(route, depth, np.flatnonzero(shallow), line, required))
     return notes
 
 
-def _shallow_legs(
+def _shallow_places(
     route: Route,
     depth: FloatArray,
     shallow: np.ndarray,
     line: tuple[FloatArray, FloatArray, np.ndarray],
     required: float,
 ) -> str:
-    """Return the warning about legs with less depth than the ship requires."""
+    """Return the warning about places with less depth than the ship requires, the worst first."""
     lat, lon, leg = line
+    left = shallow[np.argsort(depth[shallow], kind="stable")]
     found = []
-    for number in np.unique(leg[shallow]):
-        points = shallow[leg[shallow] == number]
-        worst = points[np.argmin(depth[points])]
-        place = format_position_minutes(float(lat[worst]), float(lon[worst]))
-        time = time_of_passing(route, int(number), float(lat[worst]), float(lon[worst]))
-        found.append((float(depth[worst]), f"{depth[worst]:.0f} m near {place}{time}"))
-    named = [text for _, text in sorted(found)[:_MOST_LEGS]]
-    more = f", and {len(found) - _MOST_LEGS} more legs" if len(found) > _MOST_LEGS else ""
+    while len(left):
+        worst = left[0]
+        where = float(lat[worst]), float(lon[worst])
+        time = time_of_passing(route, int(leg[worst]), *where)
+        found.append(f"{depth[worst]:.0f} m near {format_position_minutes(*where)}{time}")
+        left = left[np.asarray(distance(lat[left], lon[left], *where)) > _SAME_PLACE]
+    named = found[:_MOST_PLACES]
+    more = f", and {len(found) - len(named)} more places" if len(found) > len(named) else ""
     return (
         f"{CHECK_DEPTH}: {required:.1f} m are required, and the {NAME} has {'; '.join(named)}"
         f"{more}. It does not show small shoals and channels, and was not read in the approaches "
