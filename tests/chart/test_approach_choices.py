@@ -53,6 +53,7 @@ def test_branches_have_names_of_their_own_and_end_in_navigable_water():
             assert dense_line(branch.line)[-1, 2] > 0.5 * NAUTICAL_MILE
 
 
+@pytest.mark.slow
 def test_every_branch_leaves_the_approach_of_a_port():
     begins = np.array([branch.line[0] for branch in BRANCHES])
     lines = [approach.line for approach in PORT_APPROACHES.all]

@@ -30,6 +30,7 @@ def test_bridges_over_an_approach_are_known(port, bridges):
     assert [one.name for one in bridges_over(line[::-1])] == names[::-1]
 
 
+@pytest.mark.slow
 def test_every_bridge_of_the_table_is_over_an_approach():
     lines = [approach.line for approach in PORT_APPROACHES.all]
     lines += [branch.line for branch in approach_branches() if len(branch.line) > 1]

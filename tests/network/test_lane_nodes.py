@@ -38,6 +38,7 @@ def least_path(chart, start, goal):
     return length.sum() / NAUTICAL_MILE, (share * length[leg]).sum() / NAUTICAL_MILE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", [ENDS, ENDS[::-1]], ids=["up", "down"])
 def test_a_coarse_network_leads_along_the_lanes_of_the_channel(chart, ends, monkeypatch):
     miles, against = least_path(chart, *ends)

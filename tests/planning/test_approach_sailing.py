@@ -109,6 +109,7 @@ def test_totals_are_those_of_the_sea_and_the_two_approaches():
     assert 0.15 < fuel.mean() / sea_rate < 0.75  # about the cube of 10 over 14.1 kn
 
 
+@pytest.mark.slow
 def test_bounds_and_notes_count_the_approaches():
     plan = planned()
     assert plan.voyage.depart == plan.best.depart

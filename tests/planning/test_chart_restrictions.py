@@ -181,6 +181,7 @@ def test_ways_to_arctic_coasts_go_as_far_north_as_vilkitsky(places, north):
     assert northern_limit(*places) == north
 
 
+@pytest.mark.slow
 def test_murmansk_to_pevek_leads_along_the_coast():
     """It was refused, and planned by Panama (12,047 nm)."""
     way = sea_distance("Murmansk", "Pevek")

@@ -263,6 +263,7 @@ def test_a_deadline_that_is_missed_by_far_is_refused_before_refinement(planned, 
     assert "The earliest arrival is about 2026-05-01T16:1" in str(refusal.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wait", [True, False])
 def test_a_ship_leaves_later_rather_than_stem_a_current(wait):
     """From hour 5.4 to hour 8 a ship of 10 kn would make 0.3 kn over ground in a strait."""

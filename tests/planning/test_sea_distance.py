@@ -49,6 +49,7 @@ def test_ships_leave_callao_north_of_san_lorenzo():
     assert sea_distance("Callao", "Valparaiso").nm == pytest.approx(1_302.0, abs=2.0)
 
 
+@pytest.mark.slow
 def test_a_passage_that_is_opened_is_used_in_spite_of_the_draught():
     ports = "Gothenburg", "Gdynia"
     closed = sea_distance(*ports, draught_m=9.0)
@@ -388,6 +389,7 @@ def test_the_distance_of_a_ship_has_what_her_size_closes_and_opens(capsys):
     assert answer("--draught", "9.5")["distance_nm"] == pytest.approx(usual["distance_nm"])
 
 
+@pytest.mark.slow
 def test_an_approach_too_low_for_the_ship_is_noted_and_not_called_avoided():
     found = thalweg.distance("Rotterdam", "New York", ship=tall_ship(75.0))
     assert "Verrazano Narrows" in found.straits

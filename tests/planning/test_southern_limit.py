@@ -35,6 +35,7 @@ def test_seas_are_not_read_for_voyages_in_the_north():
     assert southern_limit(ends, pytest.fail, -60.0) == (-60.0, [])
 
 
+@pytest.mark.slow
 def test_distances_and_other_ways_of_plans_keep_the_limit():
     way = sea_distance("Melbourne", "Valparaiso")
     assert -50.1 < min(lat for lat, _ in way.line) < -49.0

@@ -45,6 +45,7 @@ def _route(feasible: bool, time_h: float = 10.0, waiting_h: float = 0.0) -> Simp
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_kernels_get_the_motions_of_waves_that_are_higher_by_the_margin(table):
     stricter = _context(table).with_stricter_motions(0.05).table
     usual, more = table.kernel_arrays().motions, stricter.kernel_arrays().motions

@@ -48,6 +48,7 @@ def _route(miles: float) -> SimpleNamespace:
     )
 
 
+@pytest.mark.slow
 def test_a_route_by_a_strait_that_is_far_off_is_compared_with_the_way_by_sunda():
     networks = []
 
