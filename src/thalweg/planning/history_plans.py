@@ -170,6 +170,7 @@ class UsualAgainstOptimal:
             "confidence": self.history.confidence,
             "voyages": self.history.voyages,
             "usual_within_limits": self.usual.feasible,
+            "usual_violations": [str(violation) for violation in self.usual.violations],
             "usual_passes": list(self.ways[0]),
             "optimal_passes": list(self.ways[1]),
             "notes": list(self.notes),

@@ -254,5 +254,8 @@ def _compare(arguments: argparse.Namespace) -> int:
     for note in comparison["notes"]:
         print(f"  usual route: {note}")
     if not comparison["usual_within_limits"]:
-        print("  the usual route exceeds a limit of this ship on this day")
+        broken = comparison["usual_violations"]
+        more = f", and {len(broken) - 1} more" if len(broken) > 1 else ""
+        print("  the usual route exceeds a limit of this ship on this day: "
+              f"{broken[0] if broken else 'it does not arrive'}{more}")  # fmt: skip
     return SUCCESS

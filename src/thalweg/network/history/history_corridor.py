@@ -15,6 +15,7 @@ from thalweg.core.errors import InputError, NoPathError
 from thalweg.core.geodesy import METRES_PER_DEGREE, Position, format_position
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.kernels.codes import NO_GO, REASONS
 from thalweg.network.assembly import (
     DirectedEdges,
     Pairs,
@@ -231,12 +232,16 @@ class HistoryCorridor:
         known, path = shortest_path(network, network.meta.start, network.meta.goal)
         if not path:
             reached = np.flatnonzero(np.isfinite(known))
-            reasons = " and ".join(f"{n:,} by {why}" for why, n in network.meta.rejected.items())
+            shoal = " or shoal water" if chart.zones.closed_shoals is not None else ""
+            words = {REASONS[NO_GO]: f"{REASONS[NO_GO]}{shoal}"}
+            counts = network.meta.rejected.items()
+            reasons = " and ".join(f"{n:,} by {words.get(why, why)}" for why, n in counts)
             raise NoPathError(
                 f"The usual water has no way from {format_position(*start)} to "
                 f"{format_position(*goal)} on this chart.",
                 f"Of its edges the chart refuses {reasons or 'none'}.",
-                "Allow a smaller distance from land, or leave the corridor (corridor gain).",
+                "Allow a smaller distance from land (--offing), shoals (--ignore-shoals), "
+                "or leave the corridor (corridor gain).",
                 reasons=network.meta.rejected,
                 nearest=(float(network.lat[reached[-1]]), float(network.lon[reached[-1]])),
             )
