@@ -7,7 +7,7 @@ from thalweg import Sea, Ship, Voyage, evaluate, plan
 from thalweg.chart.ports import PORTS
 from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.request.joined_approach import joined_approach
+from thalweg.planning.request.joined_approach import joined_ways
 from thalweg.planning.request.voyage_endpoints import resolve_places
 from thalweg.planning.sea_distance import sea_distance, world_chart
 from thalweg.route import RouteFileOptions, write_route_files
@@ -22,7 +22,7 @@ def world():
 
 
 def test_a_ship_in_a_harbour_joins_the_line_of_its_port(world):
-    approach = joined_approach(*ROADS_OF_PRINCE_RUPERT, world)
+    approach = joined_ways(*ROADS_OF_PRINCE_RUPERT, world)[0]
     of_port = world.approaches.of(PORTS.lookup("Prince Rupert"))
     assert approach.line[0] == ROADS_OF_PRINCE_RUPERT
     assert approach.sea_end == of_port.sea_end
@@ -39,11 +39,24 @@ def test_a_deep_ship_at_fisherman_islands_leaves_by_the_main_channel_of_brisbane
     assert any("beside the approach of Brisbane" in note for note in found.notes)
 
 
+def test_a_ship_below_a_branch_goes_up_the_line_to_it(world):
+    """In Chesapeake Bay south of Baltimore the way to the Delaware leaves the line above her."""
+    place = 39.0, -76.40
+    ways = {way.way: way for way in joined_ways(*place, world)}
+    (name,) = [name for name in ways if "to the Delaware" in name]
+    way = ways[name]
+    assert way.line[0] == place
+    assert max(lat for lat, _lon in way.line) > 39.5
+    small = Ship.simple(speed_kn=12.0, draught_m=5.0, length_m=100.0, breadth_m=16.0)
+    by_canal = sea_distance(place, "New York", ship=small)
+    assert by_canal.nm < 270.0
+
+
 @pytest.mark.parametrize(
     "place", [(54.0, -133.0), (54.30, -130.90), (40.0, -60.0)], ids=["Hecate", "end", "ocean"]
 )
 def test_a_ship_at_sea_joins_no_line(world, place):
-    assert joined_approach(*place, world) is None
+    assert joined_ways(*place, world) == []
 
 
 def test_lines_near_a_position_are_measured_from_the_berth(world):

@@ -45,6 +45,7 @@ _TURN: Final = round(360.0 / _CELL)
 _LENGTH_TOLERANCE: Final = 0.02  # of a leg that follows a line, relative
 #: Lines are joined where they are this close with only water between them [m].
 LONGEST_JOINT: Final = 1.0 * NAUTICAL_MILE
+JOINED_WITHIN: Final = 2.0 * NAUTICAL_MILE  #: a position in a harbour joins a line so near [m]
 JOINT_SPACING: Final = 0.1 * NAUTICAL_MILE  #: of the places of dense lines [m]
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.approaches import LONGEST_JOINT
+from thalweg.chart.approaches import JOINED_WITHIN, ON_LINE
 from thalweg.chart.canal_parts import (
     canal_part,
     first_legs_of_transits,
@@ -196,13 +196,20 @@ def _needed_along_approaches(track: Track, chart: Chart) -> NDArray[np.bool_]:
 
 
 def _add_joints(along: NDArray[np.bool_], track: Track, chart: Chart) -> None:
-    """Add the first and last leg where these lead over water to an approach that is followed."""
-    for leg, beside in ((0, 1), (len(along) - 1, len(along) - 2)):
+    """Add the first and last leg where these join an approach that is followed, over water.
+
+    They do at its place nearest to the end of the track.
+    """
+    assert chart.approaches is not None  # by the caller
+    for leg, beside, end in ((0, 1, 0), (len(along) - 1, len(along) - 2, len(along))):
         if len(along) < 2 or along[leg] or not along[beside]:
             continue
-        ends = [(track.lat[k], track.lon[k]) for k in (leg, leg + 1)]
-        if float(distance(*ends[0], *ends[1])) <= LONGEST_JOINT:
-            along[leg] = not bool(chart.legs_blocked(*ends[0], *ends[1]))
+        first, second = ((float(track.lat[k]), float(track.lon[k])) for k in (leg, leg + 1))
+        length = float(distance(*first, *second))
+        place = float(track.lat[end]), float(track.lon[end])
+        near = chart.approaches.lines_near(*place, within=JOINED_WITHIN)
+        if any(abs(length - apart) <= ON_LINE for _approach, _along, apart in near):
+            along[leg] = not bool(chart.legs_blocked(*first, *second))
 
 
 def _with_canal_parts(legs: CanalLegs, track: Track) -> CanalLegs:

@@ -86,7 +86,7 @@ def approach_limit_notes(
 
 def _over_land_notes(chart: Chart, approach: PortApproach) -> list[str]:
     lat, lon = np.array(approach.line, float).T
-    if approach.through:  # a canal is land of the coastline
+    if approach.through or "Canal" in approach.way:  # a canal is land of the coastline
         return []
     least = _OVER_LAND[approach.quality != "computed"]
     first = most_miles_over_land(chart, lat[:2], lon[:2])

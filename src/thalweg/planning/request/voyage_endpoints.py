@@ -19,7 +19,7 @@ from thalweg.core.geodesy import (
     parse_position,
 )
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.request.joined_approach import joined_approach
+from thalweg.planning.request.joined_approach import joined_ways
 from thalweg.planning.request.swapped_degrees import (
     NEAR_PORT,
     check_order_of_degrees,
@@ -296,14 +296,11 @@ def along_approach(end: Endpoint, chart: Chart, apart: float) -> Endpoint:
     """
     if end.is_port:
         return end
-    approach = joined_approach(end.lat, end.lon, chart)
-    if approach is None or apart < max(_SHORT_VOYAGE, _LENGTHS_OF_APPROACH * approach.length):
+    ways = joined_ways(end.lat, end.lon, chart)
+    if not ways or apart < max(_SHORT_VOYAGE, _LENGTHS_OF_APPROACH * ways[0].length):
         return end
-    ways = [
-        way
-        for way in approach_choices(approach, chart.canals, chart.passages)
-        if _is_usable(way, chart)
-    ]
+    approach = ways[0]
+    ways = [way for way in ways if _is_usable(way, chart)]
     if not ways:
         return end
     place = "beside"
