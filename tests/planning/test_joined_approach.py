@@ -98,6 +98,20 @@ def test_a_ship_on_the_river_of_her_port_is_not_in_it(world):
     assert 240.0 < way.nm < 320.0
 
 
+def test_a_canal_is_not_reached_straight_over_land(world):
+    """In the fjord of Kiel, beside the gate of the canal, land lies between."""
+    for way in joined_ways(54.35, 10.16, world):
+        assert not world.legs_blocked(*way.line[0], *way.line[1])
+    start, goal = resolve_places((54.35, 10.16), [], "Hamburg", world)
+    assert start.approach is not None and goal.approach is not None
+
+
+def test_ends_on_both_sides_of_a_canal_follow_their_lines(world):
+    ends = resolve_places((53.55, 9.80), [], (54.35, 10.16), world)
+    assert [end.approach.port.label for end in ends] == ["Hamburg, DE", "Kiel, DE"]
+    assert {way.canal for end in ends for way in end.ways} >= {"kiel"}
+
+
 def test_a_position_on_land_is_moved_and_joins(world):
     end = resolve_places((54.31, -130.34), [], "Sydney", world)[0]
     assert end.approach.port.label == "Prince Rupert, CA"

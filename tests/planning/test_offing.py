@@ -274,3 +274,13 @@ def test_as_much_distance_from_land_as_possible_is_kept_on_the_way_out_of_a_harb
     at_end, round_it = (d for d in chart.offing.discs if (d.lat, d.lon) == place)
     assert (round_it.least, round_it.radius) == (least * NAUTICAL_MILE, within * NAUTICAL_MILE)
     assert at_end.radius == 0.0
+
+
+def test_an_end_in_a_sound_that_is_nowhere_wide_keeps_a_quarter_of_a_mile(world):
+    """Puget Sound: no water there is as far from land as the offing, and none was kept."""
+    end = Endpoint("", 47.30, -122.45, 0.0)
+    discs = chart_off_land(world, [end, end], 3704.0).offing.discs
+    own = [disc for disc in discs if (disc.lat, disc.lon) == (end.lat, end.lon)]
+    assert max(disc.radius for disc in own) == pytest.approx(40.0 * NAUTICAL_MILE)
+    widest = max(own, key=lambda disc: disc.radius)
+    assert widest.least == pytest.approx(0.25 * NAUTICAL_MILE)

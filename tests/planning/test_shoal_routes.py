@@ -15,6 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.depth_report import depth_notes
 from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.planning.request.requirements import Requirements
 from thalweg.planning.request.shoal_choice import add_shoals, close_shoals
@@ -189,3 +190,16 @@ def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
         (False, 1.0, 1.0, 0.0),
     ]  # fmt: skip
     assert not any(note.startswith("Closed:") for note in found.needs.notes)
+
+
+def test_a_short_way_over_flats_is_stated_where_the_layer_does_not_count():
+    """South San Francisco Bay, within 12 nm of both ends."""
+    chart = Chart.gshhg("i")
+    ship = Ship.simple(12.0, 16.5, length_m=270.0, breadth_m=48.0)
+    line = [(37.80, -122.35), (37.66, -122.25), (37.57, -122.16)]
+    route = evaluate(line, ship=ship, sea=Sea.calm(), chart=chart, depart="2026-01-01")
+    (note,) = depth_notes(chart, route, ship, 2.0)
+    assert note.startswith("Check the depth: the whole way is near its ends")
+    assert "and 18.5 m are required" in note
+    shallow = Ship.simple(12.0, 0.4, length_m=10.0, breadth_m=3.0)
+    assert depth_notes(chart, route, shallow, 0.0) == []

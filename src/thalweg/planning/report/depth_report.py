@@ -15,6 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.land_report import time_of_passing
 from thalweg.route import Route
 from thalweg.route.doubtful_depth import is_too_shallow, positions_with_legs
+from thalweg.route.route_tables import LEG_KINDS
 from thalweg.ship import Ship
 
 _MOST_PLACES: Final = 5
@@ -46,9 +47,36 @@ def depth_notes(chart: Chart, route: Route, ship: Ship, clearance: float) -> lis
     ]
     depth = np.asarray(coarse_depth(lat, lon))
     shallow = is_too_shallow(chart, route, ship, depth < required)
-    if shallow.any():
+    everywhere = is_too_shallow(chart, route, ship, np.ones(len(depth), bool))
+    if not everywhere.any():
+        notes += _unread_depths(route, depth, line, required)
+    elif shallow.any():
         notes.append(_shallow_places(route, depth, np.flatnonzero(shallow), line, required))
     return notes
+
+
+def _unread_depths(
+    route: Route,
+    depth: FloatArray,
+    line: tuple[FloatArray, FloatArray, np.ndarray],
+    required: float,
+) -> list[str]:
+    """Return a note on a route of which the depth layer counts nowhere, where it has too little."""
+    lat, lon, leg = line
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.legs["length"]))))
+    at_sea = np.flatnonzero(kind[leg] == LEG_KINDS.index("sea"))
+    if not len(at_sea):
+        return []
+    known = at_sea[np.isfinite(depth[at_sea])]
+    worst = known[np.argmin(depth[known])] if len(known) else None
+    if worst is None or not depth[worst] < required:
+        return []
+    place = format_position_minutes(float(lat[worst]), float(lon[worst]))
+    return [
+        f"{CHECK_DEPTH}: the whole way is near its ends, land, canals or in narrow passages, where "
+        f"the {NAME} is too coarse and does not count. It has {depth[worst]:.0f} m near {place}, "
+        f"and {required:.1f} m are required: see the chart."
+    ]
 
 
 def _shallow_places(

@@ -40,7 +40,11 @@ def joined_ways(lat: float, lon: float, chart: Chart) -> list[PortApproach]:
     whole, along = found
     place = lat, lon
     approach = _from_position(whole, _line_from(place, whole, along))
-    ways = list(approach_choices(approach, chart.canals, chart.passages))
+    ways = [  # a canal beside a port is reached straight from its berth, but not from everywhere
+        way
+        for way in approach_choices(approach, chart.canals, chart.passages)
+        if not way.through or not bool(chart.legs_blocked(*way.line[0], *way.line[1]))
+    ]
     known = {way.way for way in ways}
     for way in approach_choices(whole, chart.canals, chart.passages):
         left = _shared_length(whole.line, way.line)

@@ -25,6 +25,7 @@ _DISC_RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (3.0, 5.0, 10.0, 4
 _RIVER_RADII: Final = _DISC_RADII[-2:]
 #: Distances from land that are tried inside a disc with a radius, the widest first [m].
 _LEAST_OF_DISCS: Final = tuple(share * NAUTICAL_MILE for share in (0.5, 0.25, 0.1, 0.05))
+_LEAST_IN_SOUND: Final = 0.25 * NAUTICAL_MILE
 _LOOK_BEYOND: Final = 12.0 * NAUTICAL_MILE
 _ENOUGH_POSITIONS: Final = 30  # positions of a grid as far from land as the offing: open water
 _RIVER_OFFING: Final = 300.0  # off the banks before a canal [m]
@@ -131,8 +132,9 @@ def _discs_of_end(
 ) -> list[OffingDisc]:
     """Return the smallest discs that join an end to water as far from land as the offing.
 
-    Inside the larger one as much distance from land is required as leaves them joined. For some
-    miles before the end of a canal in a river a small distance is enough.
+    Inside the larger one as much distance from land is required as leaves them joined, if need be
+    with none in a smaller one. For some miles before the end of a canal in a river a small distance
+    is enough.
     """
     place = end.lat, end.lon
     shore = float(chart.coastline.shore_distance(*place, cap=offing))
@@ -145,10 +147,15 @@ def _discs_of_end(
         least = min(0.9 * shore, _RIVER_OFFING)
         river = [OffingDisc(*place, least, radius) for radius in _RIVER_RADII]
         return [next((disc for disc in river if _joins(chart, [disc], offing)), river[-1])]
-    for radius in _DISC_RADII:
-        if _joins(chart, [OffingDisc(*place, 0.0, radius)], offing):
-            break
-    kept = ([at_end, OffingDisc(*place, least, radius)] for least in _LEAST_OF_DISCS)
+    joins = (r for r in _DISC_RADII if _joins(chart, [OffingDisc(*place, 0.0, r)], offing))
+    radius = next(joins, None)
+    if radius is None:  # a sound without open water: others are tried with less offing
+        return [
+            OffingDisc(*place, 0.0, _DISC_RADII[0]),
+            OffingDisc(*place, _LEAST_IN_SOUND, _DISC_RADII[-1]),
+        ]
+    inner = [at_end, *(OffingDisc(*place, 0.0, r) for r in _DISC_RADII if r < radius)]
+    kept = ([one, OffingDisc(*place, least, radius)] for one in inner for least in _LEAST_OF_DISCS)
     possible = (discs for discs in kept if _joins(chart, discs, offing))
     return next(possible, [OffingDisc(*place, 0.0, radius)])
 

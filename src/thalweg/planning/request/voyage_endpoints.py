@@ -36,9 +36,8 @@ MAX_SNAP_PORT = 60_000.0
 NOT_REACHED: Final = "Does not reach"  #: a note on a port far from the end of the route begins so
 #: A port moved farther than this [m] is not reached: the end of the route has no port's name.
 _REACHED: Final = 2.0 * NAUTICAL_MILE
-#: Voyages shorter than this [m], or than so many lengths of the approach, do not follow one.
+#: Voyages shorter than this [m], or than the way to the sea or a canal, do not follow one.
 _SHORT_VOYAGE: Final = 20.0 * NAUTICAL_MILE
-_LENGTHS_OF_APPROACH: Final = 2.0
 
 
 @dataclass(frozen=True)
@@ -297,7 +296,7 @@ def along_approach(end: Endpoint, chart: Chart, apart: float) -> Endpoint:
     if end.is_port:
         return end
     ways = joined_ways(end.lat, end.lon, chart)
-    if not ways or apart < max(_SHORT_VOYAGE, _LENGTHS_OF_APPROACH * ways[0].length):
+    if not ways or apart < max(_SHORT_VOYAGE, min(way.length for way in ways)):
         return end
     approach = ways[0]
     ways = [way for way in ways if _is_usable(way, chart)]
