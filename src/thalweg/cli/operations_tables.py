@@ -62,7 +62,8 @@ def print_waiting_study(
     console = Console()
     console.print(table)
     console.print(
-        f"{len(study.trips)} trips. Columns with hours: longest wait allowed before each trip. "
+        f"{len(study.trips)} trip{'s' if len(study.trips) > 1 else ''}, without loading and "
+        "unloading. Columns with hours: longest wait allowed before each trip. "
         "total: from ready to the last arrival, with the longest wait. even: hotel power above "
         "which waiting saves nothing."
     )
