@@ -10,6 +10,7 @@ import xarray as xr
 
 from tests.conftest import data_file
 from thalweg import Sea, Ship, evaluate
+from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
 from thalweg.cli.main import main
 from thalweg.core.errors import DatasetError
 from thalweg.route import read_track
@@ -18,9 +19,9 @@ HERWART = "metocean/northsea_storm_herwart_20171027_29_dhi_ugrid.nc"
 SAN_DIEGO = "tide/adh_sandiego_waterlevel_ugrid_30min.nc"
 
 
-def planned(capsys, *words: str) -> dict:
-    """Run ``thalweg plan`` and return its JSON answer."""
-    assert main(["plan", *words, "--ship", "hopper-dredger", "--json"]) == 0
+def planned(capsys, *words: str, code: int = SUCCESS) -> dict:
+    """Run ``thalweg plan``, which ends with an exit code, and return its JSON answer."""
+    assert main(["plan", *words, "--ship", "hopper-dredger", "--json"]) == code
     return json.loads(capsys.readouterr().out)
 
 
@@ -64,7 +65,9 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
     path = data_file(SAN_DIEGO)
     words = ["--sea", str(path), "--map", "crs=EPSG:32611", "--coast", "none"]
     words += ["--depart", "2000-01-01T01:00Z", "--load-factor", "0", "--out", str(tmp_path)]
-    answer = planned(capsys, "32.65,-117.25", "32.63,-117.11", *words, "--ukc", "0.5")
+    ends = "32.65,-117.25", "32.63,-117.11"
+    answer = planned(capsys, *ends, *words, "--ukc", "0.5", code=NO_ROUTE)  # with squat aground
+    assert any("the ship is" in note and "too deep" in note for note in answer["notes"])
     assert answer["provenance"]["networks"][0]["nodes"] > 8000
     best = answer["routes"][0]
     assert best["feasible"]
@@ -83,8 +86,8 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
     assert -0.01 <= longer <= 6.0 * np.count_nonzero(waits)
     # The thinned mesh is too coarse for the gullies: all nodes are used.
     thinned = planned(
-        capsys, "32.65,-117.25", "32.63,-117.11", *words[:-2], "--ukc", "0.5",
-        "--network", "mesh", "--resolution", "0.3",
+        capsys, *ends, *words[:-2], "--ukc", "0.5", "--network", "mesh", "--resolution", "0.3",
+        code=NO_ROUTE,
     )  # fmt: skip
     assert thinned["routes"][0]["feasible"]
     assert thinned["routes"][0]["time_h"] == pytest.approx(best["time_h"], abs=0.01)
