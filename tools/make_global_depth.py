@@ -21,7 +21,8 @@ DRYING = 2  # points up to this height [m] count as water of no depth: flats tha
 DEEPEST = 254  # [m]
 REEF_LATITUDE = 30.0  # [deg]
 REEF_HEIGHT = 30  # [m]; higher points are islands that ETOPO1 has at another place
-REEF_OFF_LAND = 1.5, 10.0  # least and greatest [nautical miles]; farther off are errors of soundings
+#: Least and greatest distance of reefs from land [nautical miles]; farther off are errors.
+REEF_OFF_LAND = 1.5, 10.0
 OUT = Path(__file__).parents[1] / "src/thalweg/chart/data/depth_6min.npz"
 
 
