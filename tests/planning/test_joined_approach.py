@@ -112,6 +112,14 @@ def test_ends_on_both_sides_of_a_canal_follow_their_lines(world):
     assert {way.canal for end in ends for way in end.ways} >= {"kiel"}
 
 
+def test_a_voyage_without_an_offing_takes_the_water_as_it_is(world):
+    """Published cases begin and end in harbours of their charts."""
+    ends = resolve_places(ROADS_OF_PRINCE_RUPERT, [], "Sydney", world, joins=False)
+    assert ends[0].approach is None and ends[1].approach is not None
+    free = sea_distance(ROADS_OF_PRINCE_RUPERT, "Vancouver", offing_nm=0.0)
+    assert [name for name, _ in free.approaches] == ["Vancouver, CA"]
+
+
 def test_a_position_on_land_is_moved_and_joins(world):
     end = resolve_places((54.31, -130.34), [], "Sydney", world)[0]
     assert end.approach.port.label == "Prince Rupert, CA"

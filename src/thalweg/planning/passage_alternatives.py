@@ -168,7 +168,9 @@ def _question(plan: PlanData) -> _Question | None:
     time = float(np.sum(duration[at_sea]))  # without waits: a leg departs after its wait
     speed = sailed / time if sailed > 0.0 and time > 0.0 else context.ship.approach_speed
     canals = canals_with_dues(chart.canals, context.ship.file.hull)
-    ends = resolve_places(plan.voyage.start, plan.voyage.via, plan.voyage.goal, chart)
+    voyage = plan.voyage
+    joins = voyage.offing_nm != 0.0
+    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart, joins=joins)
     return _Question(
         Seaways.of_ship_chart(chart),
         tuple(without_small_ways(ends, ship_dimensions(context.ship))),

@@ -217,7 +217,7 @@ def sea_distance(
     chart = world_chart() if chart is None else chart
     check_offing(offing_nm)
     vias = (via,) if isinstance(via, str) else via
-    ends = resolve_places(start, vias, goal, chart)
+    ends = resolve_places(start, vias, goal, chart, joins=offing_nm != 0.0)
     sizes: dict[str, float | None] = {"draught": None}
     asked = (avoid,) if isinstance(avoid, str) else tuple(avoid or ())
     closed = SMALL_CANALS if avoid is None else asked
@@ -333,7 +333,7 @@ def small_ship_distance(
     if not _may_be_shorter(way, chart):
         return None
     closed = (avoid,) if isinstance(avoid, str) else tuple(avoid)
-    ends = resolve_places(start, (), goal, chart)
+    ends = resolve_places(start, (), goal, chart, joins=offing_nm != 0.0)
     opened = opened_names(chart, ("all",))
     usual, more = (seas_and_every(chart, ends, closed, o, draught_m)[0] for o in ((), opened))
     over_graph = partial(way_over_seas, ends=ends, draught=draught_m, offing=None)

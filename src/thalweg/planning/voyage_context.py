@@ -72,9 +72,9 @@ def ends_by_ways(
     voyage: Voyage, ship: Ship, chart: Chart
 ) -> tuple[list[Endpoint], Chart, list[str]]:
     """Return the ends by the ways from their berths, the chart open to the ship, and notes."""
-    ends = without_small_ways(
-        resolve_places(voyage.start, voyage.via, voyage.goal, chart), ship_dimensions(ship)
-    )
+    joins = voyage.offing_nm != 0.0
+    ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart, joins=joins)
+    ends = without_small_ways(ends, ship_dimensions(ship))
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart = restrict_passages(chart, voyage, ship, chosen_offing(voyage, ship))
     seas = partial(Seaways.of_ship_chart, chart)

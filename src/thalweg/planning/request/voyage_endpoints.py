@@ -259,8 +259,15 @@ def _nearest_port_text(lat: float, lon: float, chart: Chart) -> str:
     )
 
 
-def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart) -> list[Endpoint]:
+def resolve_places(
+    start: Place, via: Sequence[Place], goal: Place, chart: Chart, *, joins: bool = True
+) -> list[Endpoint]:
     """Resolve the places of a voyage in order to navigable water of a chart.
+
+    Parameters
+    ----------
+    joins : Whether a start and a goal in a harbour follow the approach that passes them; not so in
+        voyages that keep no offing, which take the water of the chart as it is.
 
     Raises
     ------
@@ -278,8 +285,9 @@ def resolve_places(start: Place, via: Sequence[Place], goal: Place, chart: Chart
         others.remove(place)
         with errors_about(entry), errors_on_swapped_degrees(place, others, chart):
             ends.append(resolve_endpoint(place, chart, what))
-    apart = float(distance(*ends[0].origin, *ends[-1].origin))
-    ends[0], ends[-1] = (along_approach(end, chart, apart) for end in (ends[0], ends[-1]))
+    if joins:
+        apart = float(distance(*ends[0].origin, *ends[-1].origin))
+        ends[0], ends[-1] = (along_approach(end, chart, apart) for end in (ends[0], ends[-1]))
     ends = [ends[0], *map(without_approach, ends[1:-1]), ends[-1]]
     for first, second in itertools.pairwise(ends):
         check_distinct(first, second)
