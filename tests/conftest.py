@@ -77,6 +77,16 @@ def brief_proofs() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def no_kept_distances() -> Iterator[None]:
+    """Let distances be found each time: a test may change what they depend on."""
+    from thalweg.planning.network_selection.distance_cache import DistanceQuestion
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(DistanceQuestion, "answer", lambda self: None)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def brief_fronts() -> Iterator[Any]:
     """Refine and evaluate fewer routes of a front; the value is how many a user's front has."""
     from thalweg.planning.pareto import trade_off_context

@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.chart.ports import place_positions
 
     place_positions([arguments.start, arguments.goal, *arguments.via])  # refuses unknown ports
-    from thalweg.planning.network_selection.seas_of_distance import USUAL_DEPTH
+    from thalweg.planning.network_selection.sea_distance_data import USUAL_DEPTH
     from thalweg.planning.sea_distance import sea_distance, small_ship_distance
 
     ship = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from typing import Final
 
 from thalweg.chart import Chart
 from thalweg.chart.depth.shoals import DRAUGHTS, Shoals
@@ -14,12 +13,10 @@ from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.limits import DEEPEST_DRAUGHT
 from thalweg.planning.network_selection.closed_to_draught import shoals_open_beside
+from thalweg.planning.network_selection.sea_distance_data import USUAL_DEPTH
 from thalweg.planning.report.distance_report import LEAST_DEPTH
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, small_passages
-
-#: Ways without a draught keep off water shallower than this where they can [m].
-USUAL_DEPTH: Final = 5.0
 
 
 def seas_and_every(

@@ -129,11 +129,11 @@ def _draw_closed_shoals(axes: Any, chart: Chart, box: MapExtent) -> None:
     closed = chart.zones.closed_shoals
     if closed is None:
         return
-    whole = shapely.union_all(closed.shapes)
-    outlines = []
+    tree, outlines = shapely.STRtree(closed.shapes), []
     for turn in (-360.0, 0.0, 360.0):
-        part = shapely.clip_by_rect(whole, box.west - turn, box.south, box.east - turn, box.north)
-        pieces = shapely.get_parts(part)
+        sides = box.west - turn, box.south, box.east - turn, box.north
+        near = tree.geometries[tree.query(shapely.box(*sides))]
+        pieces = shapely.get_parts(shapely.clip_by_rect(shapely.union_all(near), *sides))
         outlines += [_outline(one, turn) for one in pieces if one.geom_type == "Polygon"]
     if outlines:
         style: dict[str, Any] = {

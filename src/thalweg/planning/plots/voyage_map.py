@@ -42,6 +42,7 @@ _CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
 _DEPTH = "sea_floor_depth_below_geoid"
 _LEVEL = "sea_surface_height_above_geopotential_datum"
 
+_MOST_PLACES = 2000  # of a route, to which places of a raster are compared
 _PAD = 0.08  # round the picture [inch]
 _MARKER_POINTS = 20  # of a line that count as much as the mark of a time
 _SEA, _INK = "#eaf3fa", "#22303c"
@@ -129,11 +130,12 @@ def time_when_nearest(route: Route, lat: np.ndarray, lon: np.ndarray) -> np.ndar
         return np.full(lat.shape, route.depart)
     line = geocentric_unit_vectors(samples["lat"][known], samples["lon"][known])
     places = geocentric_unit_vectors(lat.ravel(), wrap_longitude(lon.ravel()))
-    _, nearest = cKDTree(line).query(places)
-    same_as_next = np.append(np.all(line[1:] == line[:-1], axis=1), False)
-    leaves = np.flatnonzero(~same_as_next)
-    nearest = leaves[np.searchsorted(leaves, nearest)]
-    return np.asarray(samples["time"][known][nearest].reshape(lat.shape))
+    waits = np.append(np.all(line[1:] == line[:-1], axis=1), False)
+    leaves = np.append(False, waits[:-1]) & ~waits
+    every = np.arange(len(line)) % max(len(line) // _MOST_PLACES, 1) == 0
+    shown = np.flatnonzero(leaves | every & ~waits)
+    _, nearest = cKDTree(line[shown]).query(places)
+    return np.asarray(samples["time"][known][shown][nearest].reshape(lat.shape))
 
 
 def _water_mask(
