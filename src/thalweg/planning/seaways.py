@@ -14,6 +14,7 @@ from thalweg.chart.canals import exclude_canals
 from thalweg.chart.depth.shoals import CONTOURS, Shoals
 from thalweg.chart.offing import disc_at, required_offing
 from thalweg.chart.passages import find_passages, split_avoided
+from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import (
     MEAN_RADIUS,
     Position,
@@ -149,6 +150,14 @@ class Seaways:
             excess[shoal[blocked(*graph.ends_of_edges(shoal))]] = np.inf
             closures = replace(closures, excess=excess)
         return graph.path(self._open_chart, *places, closures)
+
+    def length_over_graph(self, start: Position, goal: Position) -> float:
+        """Return the length of the shortest way over the graph [m]; 0 where there is none."""
+        try:
+            path = sea_graph(self.chart).path(self._open_chart, start, goal, self._closures)
+        except NoRouteError:
+            return 0.0
+        return path_length_and_canals(self.chart, path)[0]
 
     def path_between_lines(
         self, start: LinePlaces, goal: LinePlaces

@@ -60,6 +60,7 @@ def lattice(
     along: Sequence[Position] | None = None,
     width: float | None = None,
     detour: float = math.inf,
+    expected: float = 0.0,
 ) -> Network:
     """Build a lattice between two positions, with the positions themselves as nodes.
 
@@ -96,6 +97,9 @@ def lattice(
         of its length, from 20 to 300 nautical miles.
     detour : float, optional
         Longest path that is searched, as a multiple of the distance.
+    expected : float, optional
+        Length of a path that is known [m]: the lattice is as wide as it needs from the start. By
+        default it is widened until its own shortest path shows that it is wide enough.
 
     Returns
     -------
@@ -122,7 +126,8 @@ def lattice(
             chart, start, goal, distance, spacing, coast_levels, orientation, area
         )
         slack = _default_slack(distance) if slack is None else slack
-        attempt = _grow_until_connected(request, (di, dj), distance, slack, detour)
+        known = min(max(1.0, expected / distance), detour)
+        attempt = _grow_until_connected(request, (di, dj), distance, slack, detour, known)
     else:
         lat, lon, length = _densified(along)
         request = _make_request(
@@ -224,10 +229,18 @@ def _make_request(
 
 
 def _grow_until_connected(
-    request: LatticeRequest, offsets: Offsets, distance: float, slack: float, detour: float
+    request: LatticeRequest,
+    offsets: Offsets,
+    distance: float,
+    slack: float,
+    detour: float,
+    known: float,
 ) -> LatticeAttempt:
-    """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
-    factor, extra = 1.01 * (1.0 + slack), 0
+    """Grow and refine until start and goal connect and the slack fits; return the last lattice.
+
+    ``detour`` and ``known``, of a path that is known, are multiples of the distance.
+    """
+    factor, extra = 1.01 * (1.0 + slack) * known, 0
     while True:
         attempt = grow_within_budget(request, offsets, factor * distance, extra)
         ground, draft = attempt.ground, attempt.draft

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from thalweg.network.regional_lattice.lattice_builder import default_coast_level
 from thalweg.planning.network_selection.model_mesh import model_mesh_network
 from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import Seaways
 from thalweg.sea import Mesh, Sea
 
 #: Voyages of at least this distance [m] with a route longer than this multiple of it are searched
@@ -105,14 +106,26 @@ class LatticeBetween:
 
     def _built(self, spacing: float | None, coast_levels: int | None) -> Network:
         build = partial(
-            lattice, self.chart, *self.places, spacing=spacing, coast_levels=coast_levels
-        )
+            lattice, self.chart, *self.places, spacing=spacing, coast_levels=coast_levels,
+            expected=self._expected_length,
+        )  # fmt: skip
         if self._limits_detour and self._path is None:
             try:
                 return build(detour=_DETOUR_RATIO)
             except NoRouteError:
                 self._limits_detour, self._path = False, self._globe_path()[0]
         return build(along=self._path)
+
+    @cached_property
+    def _expected_length(self) -> float:
+        """Length of the way over all seas [m]; 0 where it is not known, or likely the distance."""
+        (lat, lon), goal = self.places
+        world = bool(self.chart.passages) and self.chart.area.width >= 360.0
+        if self._path is not None or not (
+            world and np.any(self.chart.legs_blocked(lat, lon, *goal))
+        ):
+            return 0.0
+        return Seaways.of_ship_chart(self.chart).length_over_graph((lat, lon), goal)
 
     def _long_way_round(self) -> list[Position] | None:
         """Return the path over the globe network if it is surely too long for a whole lattice."""
