@@ -99,3 +99,13 @@ def test_a_route_on_which_squat_puts_the_ship_aground_is_no_success():
         LINE, ship=ship, sea=shoal, chart=CHART, depart="2026-03-10T03:00Z", strict=False
     )
     assert not ashore.feasible and not touches_bottom(ashore, ship)  # stated as a limit
+
+
+def test_a_job_of_the_service_on_which_she_is_aground_is_not_feasible():
+    from thalweg.service.jobs.job_work import job_summary
+
+    ship = Ship.from_dict(TANKER | {"hull": TANKER["hull"] | {"draught_m": 12.3}})
+    voyage = Voyage(start=LINE[0], goal=LINE[1], depart="2026-03-10T03:00Z", min_ukc_m=0.5)
+    found = plan(voyage, ship=ship, sea=SEA, chart=CHART)
+    assert found.best.feasible and touches_bottom(found.best, ship)
+    assert job_summary(found, 1.0)["feasible"] is False

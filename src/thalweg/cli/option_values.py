@@ -5,14 +5,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.options import FILLABLE
 from thalweg.core.errors import InputError
-from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
-
-_USUAL_YEAR: Final = 2026  # whose European rules hold where no time is given
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -248,11 +245,11 @@ def with_held_order(ship: Ship, arguments: argparse.Namespace) -> Ship:
 
 def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     """Return the charges of the European Union that the options give."""
-    from thalweg.planning.request.voyage_surroundings import CHARGE_YEARS, check_charges
+    from thalweg.planning.request.voyage_surroundings import check_charges
     from thalweg.ship.methods.engine.european_charges import EuropeanCharges
 
     share, allowance, euro = arguments.eu_share, arguments.ets_price, arguments.eur_rate
-    year = _year_of_rules(arguments, CHARGE_YEARS)
+    year = _year_of_charges(arguments)
     check_charges({"ets_price": allowance or 0.0, "eur_rate": euro or 0.0, "year": year})
     if allowance is None and euro is None:
         return None
@@ -266,19 +263,11 @@ def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
     return EuropeanCharges(found, *prices, source)
 
 
-def _year_of_rules(arguments: argparse.Namespace, known: tuple[int, int]) -> int:
-    """Return the year whose European rules hold: the one given, or that of the departure.
+def _year_of_charges(arguments: argparse.Namespace) -> int:
+    """Return the year whose European rules hold: the one given, or that of the departure."""
+    from thalweg.planning.request.voyage_surroundings import year_of_rules
 
-    Departures before the first rules stand for weather of the past: `_USUAL_YEAR` holds.
-    """
-    if arguments.eu_year is not None:
-        return int(arguments.eu_year)
-    window = getattr(arguments, "depart_window", None) or [None]
-    times = [getattr(arguments, "depart", None), window[0], getattr(arguments, "arrive", None)]
-    given = next((time for time in times if time is not None), None)
-    year = _USUAL_YEAR if given is None else int(format_time(parse_time(given))[:4])
-    first, last = known
-    return min(year, last) if year >= first else _USUAL_YEAR
+    return year_of_rules(vars(arguments)) if arguments.eu_year is None else int(arguments.eu_year)
 
 
 def position_from_text(text: str) -> Position:

@@ -20,7 +20,11 @@ from thalweg.planning.report.filled_weather import has_fills, wave_shares
 from thalweg.planning.report.waiting_report import hours_above_limits
 from thalweg.planning.request.filled_sea import filled_in_turns
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
-from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
+from thalweg.planning.request.voyage_surroundings import (
+    chart_of_entries,
+    ship_of_entries,
+    with_year_of_rules,
+)
 from thalweg.route import Route, Track, evaluate, read_track
 from thalweg.route.indicator_columns import INDICATORS, indicator_value
 from thalweg.sea import Sea
@@ -267,8 +271,11 @@ def ship_of_request(request: Mapping[str, Any], folder: str) -> Ship:
     voyage = request.get("voyage") or {}
     own_share = (request.get("charges") or {}).get("share_percent") is not None
     ends = None if own_share else [voyage.get(name) for name in ("start", "goal")]
-    entries = [request.get(name) for name in ("ship", "load_factor", "limits", "charges")]
-    return _ship(canonical_json([*entries, ends if request.get("charges") else None]), folder)
+    entries = [request.get(name) for name in ("ship", "load_factor", "limits")]
+    charges = request.get("charges")
+    if charges is not None:
+        charges = with_year_of_rules(charges, voyage)
+    return _ship(canonical_json([*entries, charges, ends if charges else None]), folder)
 
 
 @lru_cache(maxsize=8)

@@ -11,6 +11,7 @@ from thalweg.chart import Chart
 from thalweg.chart.geojson_polygons import GeoJsonSource
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.given_numbers import shortened_repr, to_number
+from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import KNOT
 from thalweg.planning.request.european_scope import share_between_places
 from thalweg.ship import Ship, plugin_names
@@ -26,6 +27,7 @@ LARGEST_LIMITS: Final[Mapping[str, float]] = {
 LARGEST_CHARGE: Final = 1e5  #: of an allowance or a euro
 CHARGE_YEARS: Final = (2024, 2060)
 SHARES_PERCENT: Final = (0, 50, 100)
+_USUAL_YEAR: Final = 2026  # whose rules hold where no time is given
 _CHARGES: Final = ("share_percent", "ets_price", "eur_rate", "year")
 
 
@@ -136,6 +138,39 @@ def check_charges(given: Any) -> None:
             raise _wrong_entry(field, value, f"a number from 0 to {LARGEST_CHARGE:,.0f}")
 
 
+def year_of_rules(voyage: Mapping[str, Any]) -> int:
+    """Return the year whose European rules hold for a voyage.
+
+    Parameters
+    ----------
+    voyage : Its entries ``depart``, ``depart_window``, ``arrive`` and ``arrive_by``: the first
+        time of them counts.
+
+    Returns
+    -------
+    int : That of the departure. Departures before the first rules stand for weather of the past:
+        the rules of 2026 hold, as they do without a time.
+    """
+    window = voyage.get("depart_window") or [None]
+    times = [voyage.get("depart"), window[0], voyage.get("arrive"), voyage.get("arrive_by")]
+    given = next((time for time in times if time is not None), None)
+    year = _USUAL_YEAR if given is None else int(format_time(parse_time(given))[:4])
+    first, last = CHARGE_YEARS
+    return min(year, last) if year >= first else _USUAL_YEAR
+
+
+def with_year_of_rules(charges: Mapping[str, Any], voyage: Mapping[str, Any]) -> dict[str, Any]:
+    """Return charges with a year: their own, or that of a voyage.
+
+    Parameters
+    ----------
+    charges : As of `ship_of_entries`.
+    voyage : As of `year_of_rules`.
+    """
+    own = charges.get("year")
+    return {**charges, "year": year_of_rules(voyage) if own is None else own}
+
+
 def _entries(given: Any, what: str, known: Iterable[str]) -> Mapping[str, Any]:
     """Return entries of known names."""
     if not isinstance(given, Mapping):
@@ -158,7 +193,7 @@ def _wrong_entry(field: str, value: Any, possible: str) -> InputError:
 def _charges_of_entries(given: Mapping[str, Any], ends: tuple[object, object]) -> EuropeanCharges:
     check_charges(given)
     prices = float(given.get("ets_price", 0.0)), float(given.get("eur_rate", 0.0))
-    year, share = int(given.get("year", 2026)), given.get("share_percent")
+    year, share = int(given.get("year", _USUAL_YEAR)), given.get("share_percent")
     if share is not None:
         return EuropeanCharges(float(share) / 100.0, *prices, year)
     found, source = share_between_places(*ends)

@@ -287,14 +287,16 @@ def _limits_of_plan(found: Plan) -> dict[str, Any] | None:
 def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
     """Return the key figures of a plan for lists of jobs."""
     from thalweg.planning.report.plan_summary import quality_text
+    from thalweg.planning.report.squat_report import touches_bottom
 
-    best = found.best
+    best, known = found.best, found.plot_context
+    aground = known is not None and touches_bottom(best, known.ship)
     return {
         "from": found.provenance.get("from"),
         "to": found.provenance.get("to"),
         "objective": found.voyage.objective,
         "routes": len(found.routes),
-        "feasible": best.feasible,
+        "feasible": best.feasible and not aground,
         "cancelled": found.cancelled,
         "seconds": seconds,
         **route_totals(best),
@@ -304,6 +306,7 @@ def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     from thalweg.planning.report.provenance import given_route_warnings
+    from thalweg.planning.report.squat_report import touches_bottom
     from thalweg.route import evaluate
 
     request = EvaluationRequest.model_validate(order.request)
@@ -333,7 +336,7 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     write_json_file(folder / "limits.json", {"routes": [met]})
     return {
         "parts": ["limits"],
-        "feasible": route.feasible,
+        "feasible": route.feasible and not touches_bottom(route, ship),
         "seconds": stages.seconds(),
         "routes": 1,
         **route_totals(route),

@@ -115,7 +115,13 @@ class RequestedCharges(BaseModel):
     eur_rate: float = Field(
         0.0, ge=0, le=LARGEST_CHARGE, description="of a euro; 0: no FuelEU penalty"
     )
-    year: int = Field(2026, ge=CHARGE_YEARS[0], le=CHARGE_YEARS[1])
+    year: int | None = Field(
+        None,
+        ge=CHARGE_YEARS[0],
+        le=CHARGE_YEARS[1],
+        description="whose rules hold; left out: the year of the departure, 2026 for departures "
+        "before 2024",
+    )
 
 
 class RequestedRouteFiles(BaseModel):

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from thalweg.core.units import DAY, HOUR
 from thalweg.planning.request.filled_sea import filled_in_turns
-from thalweg.planning.request.voyage_surroundings import chart_of_entries, ship_of_entries
+from thalweg.planning.request.voyage_surroundings import (
+    chart_of_entries,
+    ship_of_entries,
+    with_year_of_rules,
+)
 from thalweg.service.jobs.plan_request import (
     EMBEDDED_SEAS,
     EvaluationRequest,
@@ -69,11 +73,13 @@ def network_of(request: PlanRequest, files: Mapping[str, str]) -> str | HistoryC
 def open_ship_of(request: ShipAndSea, files: Mapping[str, str]) -> Ship:
     """Return the ship of a request, with its load and limits."""
     voyage = getattr(request, "voyage", {})
+    times = voyage or {"depart": getattr(request, "depart", None)}
+    charges = None if request.charges is None else request.charges.model_dump()
     return ship_of_entries(
         files.get(request.ship, request.ship),
         load_factor=request.load_factor,
         limits=request.limits.model_dump(),
-        charges=None if request.charges is None else request.charges.model_dump(),
+        charges=None if charges is None else with_year_of_rules(charges, times),
         ends=(voyage.get("start"), voyage.get("goal")),
     )
 
