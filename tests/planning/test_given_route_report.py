@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from thalweg import Chart, Sea, Ship, evaluate
+from thalweg.chart.ports import PORTS
 from thalweg.planning.report.given_route_report import (
     _sea_ends,
     file_speed_notes,
@@ -48,6 +49,20 @@ def test_a_leg_against_the_traffic_of_dover_strait_is_stated(chart):
     assert any(note.startswith("Runs against the traffic of Dover Strait") for note in notes)
     back = notes_of(french_side[::-1], chart)
     assert not any(note.startswith("Runs against") for note in back)
+
+
+def test_approaches_slower_than_ordered_are_stated(chart):
+    """The file of a plan with --approach-speed 13 took 3 h longer without, and no note said why."""
+    approach = chart.approaches.of(PORTS.lookup("SESTO"))
+    line = [*approach.line, (59.9, 19.9)]
+    (note,) = [note for note in notes_of(line, chart) if "along approaches of ports" in note]
+    miles = approach.length / 1852.0
+    assert note.startswith(
+        f"{miles:.1f} nm along approaches of ports count at 10 kn, not at the 12.0"
+    )
+    assert f"take {round(60.0 * miles * (1 / 10 - 1 / 12))} min longer" in note
+    quick = SHIP.with_approach_speed(12.0)
+    assert not [note for note in notes_of(line, chart, quick) if "along approaches" in note]
 
 
 def test_a_passage_that_is_closed_to_the_ship_is_stated(chart):

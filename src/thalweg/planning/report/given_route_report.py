@@ -10,6 +10,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.geodesy import format_position
 from thalweg.core.given_numbers import to_number
+from thalweg.core.time import duration_text
 from thalweg.core.types import BoolArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.report.approach_report import (
@@ -40,6 +41,7 @@ TURNS_ROUND: Final = "Turns round"  #: a note on such a waypoint begins so
 NEAR_LAND: Final = "Nearer to land than usual"  #: a note on such legs begins so
 FILE_SPEED: Final = "Not the speed of the route file"  #: a note on legs with limits begins so
 _SHARP: Final = math.radians(150.0)  # alterations of course that no passage plan has at sea
+_LONGER: Final = 600.0  # that approaches take than ordered, from which on it is stated [s]
 _SAME_SPEED: Final = 0.05  # differences below this are none [kn]
 _AS_WRITTEN: Final = (
     0.95  # of the usual distance: lines of files are up to 0.1 nm off those of plans
@@ -66,6 +68,7 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     swapped = [swap_notice(float(lat[k]), float(lon[k]), chart) for k in (0, -1)]
     notes += swapped[:1] if all(swapped) else []
     notes += _turns_back(route, chart) + _near_land(route, chart, ship)
+    notes += approach_speed_notes(route, ship)
     in_approach = _in_approach(route, chart)
     legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach)]
     miles = max((most_miles_over_land(chart, lat[k], lon[k]) for k in legs), default=0.0)
@@ -77,6 +80,28 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
         places = [(float(lat[k]), float(lon[k])) for k in _sea_ends(route)]
         chart = chart_with_schemes(chart, ship, places)
     return notes + lane_notes(chart, route)
+
+
+def approach_speed_notes(route: Route, ship: Ship) -> list[str]:
+    """Return how much longer approaches take than at the speeds that are ordered there.
+
+    Returns
+    -------
+    list of str : A note, from `_LONGER` on.
+    """
+    kind = np.asarray(route.legs.get("leg_kind", np.zeros(len(route.track) - 1)))
+    ordered = np.asarray(route.legs["ordered_speed"], float)
+    slower = np.flatnonzero((kind == LEG_KINDS.index("approach")) & (ordered > ship.approach_speed))
+    length = np.asarray(route.legs["length"], float)[slower]
+    longer = float(np.sum(length / ship.approach_speed - length / ordered[slower]))
+    if longer < _LONGER:
+        return []
+    return [
+        f"{length.sum() / NAUTICAL_MILE:.1f} nm along approaches of ports count at "
+        f"{ship.approach_speed / KNOT:g} kn, not at the {ordered[slower].max() / KNOT:.1f} kn that "
+        f"are ordered: they take {duration_text(longer)} longer. Where she is faster there, "
+        "evaluate with --approach-speed."
+    ]
 
 
 def _sea_ends(route: Route) -> tuple[int, int]:

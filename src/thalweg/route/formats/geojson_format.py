@@ -65,6 +65,13 @@ def parse_geojson(text: str) -> ParsedTrack:
             first_time = parse_time(str(properties.get("time", properties.get("depart"))))
     on_line: list[tuple[Any, dict[str, Any]]] = [(position, {}) for position in _first_line(lines)]
     chosen = points if len(points) > 1 else on_line
+    if not chosen and isinstance(data, dict) and "routes" in data:
+        raise InputError(
+            "The file is a plan with its figures, not a route file.",
+            "The route files of a plan are beside it: route.csv, route.rtz, route.gpx, "
+            "route.geojson.",
+            "Give one of these.",
+        )
     if not chosen:
         raise InputError(
             "The GeoJSON holds no route.", f"A route is a {_KINDS}.", "Export the route as a line."
