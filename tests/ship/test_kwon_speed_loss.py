@@ -1,12 +1,14 @@
 """Properties of Kwon's speed loss."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
-from thalweg.ship import Ship
+from thalweg.ship import Conditions, Ship
 from thalweg.ship.methods.speed_loss import (
     GREATEST_LOSS,
     beaufort_number,
@@ -40,6 +42,25 @@ def test_the_loss_is_a_share_and_greatest_from_ahead(wind, angle, block, volume,
     loss = _loss(wind, angle, block, volume, loading=loading)
     assert 0.0 <= loss <= GREATEST_LOSS
     assert loss <= _loss(wind, 0.0, block, volume, loading=loading) + 1e-12
+
+
+@pytest.mark.parametrize("block", [0.55, 0.6, 0.65, 0.7])
+def test_a_fast_ship_loses_speed_too(block):
+    """C_U of fine ships fell to zero at Froude numbers of 0.39 and more: 16 kn in any weather."""
+    at = {"block": block, "volume": 20e3, "length": 100.0}
+    edge = 0.3 * np.sqrt(9.80665 * 100.0)
+    assert _loss(10.0, 0.0, **at, speed=edge) > 0.02
+    assert _loss(10.0, 0.0, **at, speed=2.0 * edge) == _loss(10.0, 0.0, **at, speed=edge)
+    assert _loss(10.0, 0.0, **at, speed=0.9 * edge) > _loss(10.0, 0.0, **at, speed=edge)
+
+
+def test_a_froude_number_out_of_range_is_noted():
+    """10 kn and 17 kn at 140 m are Froude numbers of 0.139 and 0.236; 30 m makes it 0.51."""
+    loss = _ship("other").model.loss
+    weather = Conditions({"wind_speed": 5.0, "wind_angle": 0.0}, load_factor=1.0)
+    assert not [note for note in loss.notes(weather, 8.7) if "Froude" in str(note)]
+    (note,) = [n for n in replace(loss, length=30.0).notes(weather, 8.7) if "Froude" in str(n)]
+    assert "0.5073" in str(note) or "0.507" in str(note)
 
 
 def _ship(kind, **models) -> Ship:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, TypeVar
 
 from thalweg.core.errors import NoPathError, NoRouteError
@@ -24,12 +25,13 @@ from thalweg.planning.seaways import Seaways
 
 Planned = TypeVar("Planned")
 
-_OPENED: Final = (
-    f"{SHOALS_OPENED}: no route was found that avoids it. Check the depths on the chart."
+_CHECK: Final = (
+    "The depth layer has one depth in 6 nm, which says little in fjords and among islands. Check "
+    "the depths on the chart."
 )
-#: What is tried where no route exists: the share of the offing that is kept, and round the first
-#: and the last end a radius [m] within which a smaller share of it is enough.
-_ATTEMPTS: Final = (
+#: What is tried where no route exists: the share of the offing that is kept, and round the ends a
+#: radius [m] within which a smaller share of it is enough.
+_OFFINGS: Final = (
     (1.0, 0.0, 1.0),
     (1.0, 15.0 * NAUTICAL_MILE, 0.25),
     (1.0, 40.0 * NAUTICAL_MILE, 0.25),
@@ -40,9 +42,33 @@ _ATTEMPTS: Final = (
     (1.0, 120.0 * NAUTICAL_MILE, 0.0),
     (0.0, 0.0, 1.0),
 )
-
-
+_CLOSED: Final = 0.0  # shoals: everywhere except close to the ends
+_OPEN: Final = math.inf
+_ROUND_ENDS: Final = tuple(miles * NAUTICAL_MILE for miles in (100.0, 250.0))  # where they open
 _NEAR_SHARE: Final = 0.3  # of the distance between the ends: what is farther is not near them
+_ENCLOSED: Final = 300.0 * NAUTICAL_MILE  # water that ends so near an end leaves it enclosed
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """What a plan keeps clear of.
+
+    Attributes
+    ----------
+    share : Of the offing that is kept.
+    radius : Round the ends, within which ``near_share`` of the offing is enough [m]; 0 for none.
+    shoals : Radius round the ends in which shoals are open [m].
+    """
+
+    share: float
+    radius: float
+    near_share: float
+    shoals: float
+
+    @property
+    def is_of_ends(self) -> bool:
+        """Whether something is open round the ends."""
+        return self.radius > 0.0 or 0.0 < self.shoals < _OPEN
 
 
 def plan_off_land(
@@ -51,10 +77,11 @@ def plan_off_land(
     offing: float,
     run: Callable[[PlanningContext], Planned],
 ) -> Planned:
-    """Plan at an offing with shoals closed; where no route exists, with these open.
+    """Plan at an offing with shoals closed; where no route exists, with less of both.
 
-    Where none exists either, nearer to land round the ends, then at half of the offing, a quarter,
-    and without.
+    First round the end that the water does not lead to or from: shoals open there, then the
+    distance from land is smaller. Then shoals open everywhere, and last the offing is a half, a
+    quarter and none.
 
     Parameters
     ----------
@@ -69,25 +96,35 @@ def plan_off_land(
     if offing <= 0.0 or context.chart.coastline.is_empty:
         return run(context)
     refusal: NoRouteError | None = None
-    was_closed = False
-    length = float(distance(ends[0].lat, ends[0].lon, ends[-1].lat, ends[-1].lon))
-    tried = [one for one in _ATTEMPTS if one[1] <= _NEAR_SHARE * length]
-    attempts = (1.0, 0.0, 1.0, True), *((*one, False) for one in tried)
-    for share, radius, near_share, closing in attempts:
-        kept = share * offing
+    can_close = False
+    cut_off: tuple[int, ...] = ()  # ends that the distance from land leaves no way from
+    enclosed: tuple[int, ...] = ()
+    waiting = _attempts(ends)
+    while waiting:
+        attempt = waiting.pop(0)
+        which = enclosed or (0, -1)
+        if attempt.shoals < _OPEN and attempt.is_of_ends:
+            which = cut_off if attempt.radius > 0.0 else enclosed
+            if not (can_close and which):
+                continue  # what closes the way is not near an end
+        kept = attempt.share * offing
         chart = chart_off_land(
-            context.chart, ends, kept, near_ends=radius, near_least=near_share * kept
-        )
+            context.chart, ends, kept,
+            near_ends=attempt.radius, near_least=attempt.near_share * kept, which=which,
+        )  # fmt: skip
         notes = [*context.needs.notes, offing_note(chart, ends, offing)]
-        if closing:
-            chart, note = close_shoals(chart, ends)
+        if attempt.shoals < _OPEN:
+            round_ends = {number % len(ends): attempt.shoals for number in which if attempt.shoals}
+            chart, note, without_way = close_shoals(chart, ends, round_ends=round_ends)
+            can_close = can_close or bool(note or without_way)
+            if without_way:
+                cut_off = enclosed = tuple(n for n in (0, -1) if n % len(ends) in without_way)
             if not note:
                 continue
             chart, reopened = open_sills(chart, ends)
             notes += [reopened, note] if reopened else [note]
-            was_closed = True
-        elif was_closed:
-            notes.append(_OPENED)
+        if can_close and attempt.shoals > _CLOSED:
+            notes.append(_opened_note(attempt, [ends[number] for number in which]))
         limits = replace(context.needs.limits, offing=kept)
         needs = replace(context.needs, limits=limits, notes=tuple(notes))
         try:
@@ -101,14 +138,59 @@ def plan_off_land(
             refusal = refusal or error
             if not nearer:
                 break
-            context.report_progress(
-                "no route round the shoals"
-                if closing
-                else f"no route {kept / NAUTICAL_MILE:.2g} nm off land"
-                + (f", less within {radius / NAUTICAL_MILE:.0f} nm of the ends" if radius else "")
-            )
+            before, enclosed = enclosed, _with_enclosed_end(enclosed, error, ends)
+            if attempt.is_of_ends and before and enclosed != before:
+                waiting.insert(0, attempt)  # once more, with the other end as well
+            context.report_progress(_progress_text(attempt, kept))
     assert refusal is not None  # the loop returned otherwise
     raise refusal
+
+
+def _attempts(ends: Sequence[Endpoint]) -> list[_Attempt]:
+    """Return what is tried, in order."""
+    length = float(distance(ends[0].lat, ends[0].lon, ends[-1].lat, ends[-1].lon))
+    near = _NEAR_SHARE * length
+    found = [_Attempt(*_OFFINGS[0], _CLOSED)]
+    found += [_Attempt(*_OFFINGS[0], radius) for radius in _ROUND_ENDS if radius <= near]
+    found += [_Attempt(*one, _CLOSED) for one in _OFFINGS[1:4] if one[1] <= near]
+    return found + [_Attempt(*one, _OPEN) for one in _OFFINGS if one[1] <= near]
+
+
+def _with_enclosed_end(
+    known: tuple[int, ...], error: NoRouteError, ends: Sequence[Endpoint]
+) -> tuple[int, ...]:
+    """Return the numbers of the ends that the water does not lead from or to, as far as known.
+
+    The water that the start leads to ends near the start, or near a goal that nothing leads to.
+    """
+    if error.nearest is None:
+        return known
+    away = [float(distance(*error.nearest, end.lat, end.lon)) for end in (ends[0], ends[-1])]
+    length = float(distance(ends[0].lat, ends[0].lon, ends[-1].lat, ends[-1].lon))
+    if min(away) > min(_ENCLOSED, _NEAR_SHARE * length):
+        return known
+    one = 0 if away[0] <= away[1] else -1
+    return known if one in known else (*known, one)
+
+
+def _opened_note(attempt: _Attempt, ends: Sequence[Endpoint]) -> str:
+    """Return a note on shoals that are open because no route leads round them."""
+    if attempt.shoals == _OPEN:
+        return f"{SHOALS_OPENED}: with that water closed no route was found. {_CHECK}"
+    names = " and ".join(end.name for end in ends)
+    return (
+        f"{SHOALS_OPENED} within {attempt.shoals / NAUTICAL_MILE:.0f} nm of {names}: "
+        f"with that water closed no route was found. {_CHECK}"
+    )
+
+
+def _progress_text(attempt: _Attempt, kept: float) -> str:
+    """Return what an attempt showed; the offing was ``kept`` [m]."""
+    if attempt.shoals < _OPEN:
+        return "no route round the shoals"
+    text = f"no route {kept / NAUTICAL_MILE:.2g} nm off land"
+    near = f", less within {attempt.radius / NAUTICAL_MILE:.0f} nm of the ends"
+    return text + near if attempt.radius else text
 
 
 def _closed_way(context: PlanningContext, ends: Sequence[Endpoint]) -> NoRouteError | None:

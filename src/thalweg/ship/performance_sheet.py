@@ -179,7 +179,9 @@ def _resistance_model_rows(
         at = {n: np.array([float(np.asarray(conditions[n]))]) for n in _CONDITION_NAMES}
         notes = [str(n) for n in balance.notes(at, speeds[k : k + 1])]
         notes += [str(n) for n in plant.notes(power[k : k + 1])]
-        notes += [str(n) for n in loss.notes(weather)] if loss is not None else []
+        notes += (
+            [str(n) for n in loss.notes(weather, speeds[k : k + 1])] if loss is not None else []
+        )
         if power[k] > plant.largest_power:
             notes.append(f"the engines give {plant.largest_power / 1e3:.0f} kW: not reached")
         rows.append(

@@ -107,13 +107,14 @@ def chart_off_land(
     *,
     near_ends: float = 0.0,
     near_least: float = 0.0,
+    which: Sequence[int] = (0, -1),
 ) -> Chart:
     """Return the chart with an offing [m], smaller round ends and canals nearer to land.
 
     Parameters
     ----------
-    near_ends, near_least : Within the first distance [m] of the first and the last end the second
-        is enough [m].
+    near_ends, near_least : Within the first distance [m] of some ends the second is enough [m].
+    which : Numbers of these ends.
     """
     if offing <= 0.0:
         return chart
@@ -121,9 +122,8 @@ def chart_off_land(
     discs = [disc for end in ends for disc in _discs_of_end(chart, end, offing)]
     discs += [disc for end in canals for disc in _discs_of_end(chart, end, offing, in_river=True)]
     if near_ends > 0.0:
-        discs += [
-            OffingDisc(end.lat, end.lon, near_least, near_ends) for end in (ends[0], ends[-1])
-        ]
+        near = [ends[number] for number in which]
+        discs += [OffingDisc(end.lat, end.lon, near_least, near_ends) for end in near]
     return chart.with_offing(offing, discs=discs)
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -35,6 +36,7 @@ from thalweg.ship import Ship
 SHOALS_OPENED: Final = "The route crosses shoal water"
 #: Radii [m] of the open water round ends, where dredged channels lead through shoals.
 _RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (8.0, 20.0, 45.0, 90.0))
+_WIDEST: Final = 250.0 * NAUTICAL_MILE  # of it where shoals reach farther out than that
 _LOOK_BEYOND: Final = 15.0 * NAUTICAL_MILE
 _RIM: Final = 0.96  # of half the side of a box: water that reaches it leads on
 #: Shoals farther round the ends than this [m], or this share of the distance, are left out.
@@ -77,7 +79,12 @@ def add_shoals(
     return replace(chart, zones=replace(chart.zones, shoals=shoals)), [note]
 
 
-def close_shoals(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
+def close_shoals(
+    chart: Chart,
+    ends: Sequence[Endpoint],
+    *,
+    round_ends: Mapping[int, float] = MappingProxyType({}),
+) -> tuple[Chart, str, tuple[int, ...]]:
     """Return the chart with the water closed that has much less depth than required, and a note.
 
     Where a chart has shoal water (`add_shoals`). Round the ends as much stays open as joins them
@@ -86,37 +93,41 @@ def close_shoals(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
     Parameters
     ----------
     chart : With its offing.
+    round_ends : Least radius [m] of the open water round some ends, by their numbers from 0.
 
     Returns
     -------
     chart : The chart itself where nothing is closed.
     note : Empty then.
+    enclosed : Numbers of the ends that the distance from land does not leave joined to the sea,
+        whatever the shoals: nothing is closed where there is one.
     """
     shoals = chart.zones.shoals
     depth = 0.0 if shoals is None else closing_depth(shoals.least)
     if shoals is None or depth <= 0.0:
-        return chart, ""
+        return chart, "", ()
     closed = ClosedShoals(depth, shoals.channels, box=_region(ends))
-    radii = [_open_radius(chart, closed, (end.lat, end.lon)) for end in ends]
-    if None in radii:
-        return chart, ""
+    found = [_open_radius(chart, closed, (end.lat, end.lon)) for end in ends]
+    enclosed = tuple(number for number, radius in enumerate(found) if radius is None)
+    if enclosed:
+        return chart, "", enclosed
+    radii = [max(one or 0.0, round_ends.get(number, 0.0)) for number, one in enumerate(found)]
     discs: list[OpenDisc] = [
-        (float(end.lat), float(end.lon), radius)
-        for end, radius in zip(ends, radii)
-        if radius is not None
+        (float(end.lat), float(end.lon), radius) for end, radius in zip(ends, radii)
     ]
     for canal in chart.canals:
         for place in canal.ends:
             if _in_box(place, closed.box):
-                radius = _open_radius(chart, closed, place) or _RADII[1]
+                radius = _open_radius(chart, closed, place)
+                radius = _RADII[1] if radius is None or radius > _RADII[-1] else radius
                 discs.append((float(place[0]), float(place[1]), radius))
     closed = replace(closed, discs=tuple(discs))
     if not closed.shapes:
-        return chart, ""
+        return chart, "", ()
     wide = [
         f"{radius / NAUTICAL_MILE:.0f} nm of {end.name}"
         for end, radius in zip(ends, radii)
-        if radius is not None and radius > _RADII[0]
+        if radius > _RADII[0]
     ]
     note = (
         f"Closed: water with less than {depth:.1f} m by the {NAME}, which is too "
@@ -124,7 +135,7 @@ def close_shoals(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
         f"within {' and '.join([*wide, '8 nm of other ends'] if wide else ['8 nm of the ends'])} "
         "and in narrow passages."
     )
-    return replace(chart, zones=replace(chart.zones, closed_shoals=closed)), note
+    return replace(chart, zones=replace(chart.zones, closed_shoals=closed)), note, ()
 
 
 def _region(ends: Sequence[Endpoint]) -> DegreeBox:
@@ -152,24 +163,29 @@ def _in_box(place: Position, box: DegreeBox) -> bool:
 
 
 def _open_radius(chart: Chart, closed: ClosedShoals, place: Position) -> float | None:
-    """Return the least radius [m] of open water that joins a place to the sea; None without one."""
+    """Return the least radius [m] of open water that joins a place to the sea.
+
+    None where nothing does: the distance from land cuts it off.
+    """
     for radius in _RADII:
         half = radius + _LOOK_BEYOND
         box = _box_round(np.array([place[0]]), np.array([place[1]]), half)
         local = replace(closed, discs=((*place, radius),), box=box)
-        if not local.shapes:
+        if not local.shapes or _leads_on(chart, place, half, local):
             return radius
+    return _WIDEST if _leads_on(chart, place, _RADII[-1] + _LOOK_BEYOND, None) else None
 
-        def is_open(lat: FloatArray, lon: FloatArray, local: ClosedShoals = local) -> BoolArray:
-            return np.asarray(chart.is_navigable(lat, lon) & ~local.contains(lat, lon))
 
-        lat, lon = joined_positions(
-            *place, half, is_navigable=is_open, legs_blocked=chart.legs_blocked
-        )
-        away = np.maximum(
-            np.abs(lat - place[0]),
-            np.abs(wrap_longitude(lon - place[1])) * math.cos(math.radians(place[0])),
-        )
-        if (away * METRES_PER_DEGREE > _RIM * half).any():
-            return radius
-    return None
+def _leads_on(chart: Chart, place: Position, half: float, closed: ClosedShoals | None) -> bool:
+    """Return whether water leads from a place to the rim of a box of half a side [m] round it."""
+
+    def is_open(lat: FloatArray, lon: FloatArray) -> BoolArray:
+        water = np.asarray(chart.is_navigable(lat, lon))
+        return water if closed is None else water & ~closed.contains(lat, lon)
+
+    lat, lon = joined_positions(*place, half, is_navigable=is_open, legs_blocked=chart.legs_blocked)
+    away = np.maximum(
+        np.abs(lat - place[0]),
+        np.abs(wrap_longitude(lon - place[1])) * math.cos(math.radians(place[0])),
+    )
+    return bool((away * METRES_PER_DEGREE > _RIM * half).any())

@@ -82,11 +82,11 @@ def method_range_notes(
         depth=motion.depth[known],
         heading=motion.heading[known],
     ).with_default(load_factor=world.ship.loading.load_factor)
+    speed = motion.speed_through_water[known]
     if loss is not None:
         if "wind_speed" not in world.ship.reads:
             return []
-        return [f"{OUT_OF_RANGE}: {note}: {_WHY}" for note in loss.notes(here)]
-    speed = motion.speed_through_water[known]
+        return [f"{OUT_OF_RANGE}: {note}: {_WHY}" for note in loss.notes(here, speed)]
     route = _UnderWay(world.ship, here, speed, time[known], points.leg[known])
     return [] if waves is None else [*_height_notes(waves, route), *_sector_notes(waves, route)]
 

@@ -58,6 +58,9 @@ _LOADED: Final = (
 )
 _BALLAST: Final = (*_LOADED[:4], (2.6, -12.5, 13.5), (3.0, -16.3, 21.6), (3.4, -20.9, 31.8))
 LARGEST_FORM_COEFFICIENT: Final = 50.0  #: C_form [%] above which losses are no predictions
+#: Froude number beyond which C_U is that at it: further on the parabolas of fine ships fall to
+#: zero, as if weather cost a fast ship nothing. Displacement ships are slower.
+GREATEST_FROUDE: Final = 0.3
 _DISPUTED_ROWS: Final = (4, 5)  # rows whose last sign is in doubt
 
 
@@ -186,7 +189,7 @@ def kwon_speed_loss(
     ----------
     wind_speed : Wind at 10 m relative to the water [m/s].
     wind_angle : Angle off the bow it comes from, 0 to pi [rad].
-    speed : Calm-water speed V [m/s].
+    speed : Calm-water speed V [m/s]; beyond a Froude number of 0.3, C_U is that at 0.3.
     length : Between perpendiculars [m].
     block_coefficient, displacement_volume : C_B, and displaced volume [m3].
     loading, ship_type, sign
@@ -222,7 +225,7 @@ def kwon_speed_loss(
         by_sector[sector] = direction * kwon_form_coefficient(
             at, displacement_volume=volume, **options
         )
-    froude = np.asarray(speed, float) / np.sqrt(GRAVITY * length)
+    froude = np.minimum(np.asarray(speed, float) / np.sqrt(GRAVITY * length), GREATEST_FROUDE)
     steepness = kwon_speed_coefficient(
         froude, block_coefficient=block_coefficient, loading=loading, sign=sign
     )
@@ -245,6 +248,7 @@ def kwon_notes(
     *,
     block_coefficient: ArrayLike,
     displacement_volume: ArrayLike,
+    froude: ArrayLike = 0.0,
     loading: LoadingCondition = "loaded",
     ship_type: ShipType = "other",
 ) -> list[RangeNote]:
@@ -259,6 +263,7 @@ def kwon_notes(
     wind_speed : Wind speed at 10 m [m/s].
     block_coefficient : C_B [-].
     displacement_volume : Displaced volume [m3].
+    froude : Froude number of the calm-water speed [-].
     loading, ship_type
         See `kwon_form_coefficient`.
 
@@ -276,6 +281,7 @@ def kwon_notes(
         {
             "Beaufort number": (number, 0.0, highest),
             "C_form (loss from ahead in per cent)": (form, 0.0, LARGEST_FORM_COEFFICIENT),
+            "Froude number": (froude, 0.0, GREATEST_FROUDE),
             "block coefficient": (
                 block_coefficient,
                 _BLOCK_COEFFICIENTS[0],

@@ -151,7 +151,13 @@ class KnownSpeedModel:
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where the speed loss is used outside its range."""
-        return [] if self.loss is None else self.loss.notes(conditions)
+        if self.loss is None:
+            return []
+        index = setting_index(setting, len(self.speeds_full))
+        calm = interpolate_loading(
+            conditions.load_factor, empty=self.speeds_empty[index], full=self.speeds_full[index]
+        )
+        return self.loss.notes(conditions, calm)
 
     def greatest_speed(self, load_factor: float) -> float:
         """Greatest calm-water speed [m/s] whose power or fuel the ship file gives."""

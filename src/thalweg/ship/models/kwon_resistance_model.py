@@ -121,7 +121,8 @@ class KwonResistanceModel:
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where methods are used outside their ranges."""
-        return [*self.base.notes(conditions, setting), *self.loss.notes(conditions)]
+        calm = self.base.speed_through_water(conditions, setting)
+        return [*self.base.notes(conditions, setting), *self.loss.notes(conditions, calm)]
 
     def with_speeds(self, speeds: FloatArray, load_factor: float) -> KwonResistanceModel:
         """Return the model with other settings, given by calm-water speeds [m/s]."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.units import GRAVITY
 from thalweg.kernels import codes
 from thalweg.ship.condition_variables import CONDITION_OF_AXIS
 from thalweg.ship.conditions import Conditions
@@ -97,10 +98,11 @@ class KwonSpeedLoss:
         )
         return (number > greatest_kwon_beaufort(volume)) | (form > LARGEST_FORM_COEFFICIENT)
 
-    def notes(self, conditions: Conditions) -> list[RangeNote]:
-        """Where the method is used outside its range."""
+    def notes(self, conditions: Conditions, speed: ArrayLike) -> list[RangeNote]:
+        """Where the method is used outside its range, at calm-water speeds [m/s]."""
         return kwon_notes(
             conditions.wind_speed,
+            froude=np.asarray(speed, float) / np.sqrt(GRAVITY * self.length),
             block_coefficient=self.block_coefficient,
             displacement_volume=self.loading.displacement_at(conditions.load_factor),
             loading=self.loading.condition,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
@@ -56,6 +57,6 @@ class PrestegardshusSpeedLoss:
             )
         return np.asarray(1.0 - factor)
 
-    def notes(self, conditions: Conditions) -> list[RangeNote]:
+    def notes(self, conditions: Conditions, speed: ArrayLike) -> list[RangeNote]:
         """Nothing: the rule has no range beyond its largest weather."""
         return []

@@ -1,0 +1,91 @@
+"""What plans open where no route exists, and round which end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage
+from thalweg.core.errors import NoPathError
+from thalweg.core.limits import Limits
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.offing_attempts import plan_off_land
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.request.offing_choice import chart_off_land
+from thalweg.planning.request.requirements import Requirements
+from thalweg.planning.request.shoal_choice import SHOALS_OPENED, add_shoals, close_shoals
+from thalweg.planning.request.voyage_endpoints import Endpoint
+
+SHIP = Ship.simple(14.0, 9.0, length_m=180.0, breadth_m=30.0)
+COLOMBO = Endpoint("Colombo", 6.97, 79.82, 0.0)
+CHITTAGONG = Endpoint("Chittagong", 22.20, 91.70, 0.0)
+INCHEON = Endpoint("Incheon", 37.4317, 126.5495, 0.0)
+BUSAN = Endpoint("Busan", 35.0283, 129.0516, 0.0)
+OFFING = 2.0 * NAUTICAL_MILE
+
+
+@pytest.fixture(scope="module")
+def world():
+    return Chart.gshhg("i")
+
+
+def voyage(ends):
+    start, goal = ((end.lat, end.lon) for end in ends)
+    return Voyage(start=start, goal=goal, depart="2026-06-01")
+
+
+def attempts(world, ends, *errors):
+    """Return the shoals that are open and the offing that is enough round ends, per attempt."""
+    chart, _ = add_shoals(world, voyage(ends), SHIP, Sea.calm(), ends)
+    tries, left = [], list(errors)
+
+    def run(tried):
+        closed = tried.chart.zones.closed_shoals
+        opened = {}
+        for end in ends:
+            place = end.lat, end.lon
+            discs = () if closed is None else closed.discs
+            near = [
+                disc.radius for disc in tried.chart.offing.discs if (disc.lat, disc.lon) == place
+            ]
+            opened[end.name] = (
+                next((disc[2] / NAUTICAL_MILE for disc in discs if disc[:2] == place), np.inf),
+                max(near, default=0.0) / NAUTICAL_MILE,
+            )
+        tries.append(opened)
+        if left:
+            raise NoPathError("No way.", nearest=left.pop(0))
+        return tried
+
+    needs = Requirements((), Limits(), (), np.inf)
+    context = PlanningContext(voyage(ends), SHIP, Sea.calm(), chart, needs, None, None)
+    return tries, plan_off_land(context, ends, OFFING, run).needs.notes
+
+
+def test_shoals_open_round_the_end_that_no_water_leads_to(world):
+    """The bar off Chittagong opened the reefs of the Red Sea and of Ceylon as well."""
+    tries, notes = attempts(world, [COLOMBO, CHITTAGONG], (20.9, 91.5), (20.0, 91.5))
+    assert [one["Colombo"][0] for one in tries] == [8.0, 8.0, 8.0]
+    assert [one["Chittagong"][0] for one in tries][1:] == [100.0, 250.0]
+    (note,) = [note for note in notes if note.startswith(SHOALS_OPENED)]
+    assert "within 250 nm of Chittagong:" in note
+    assert any(note.startswith("Closed: water") for note in notes)
+
+
+def test_shoals_open_everywhere_where_the_way_ends_between(world):
+    tries, notes = attempts(world, [COLOMBO, CHITTAGONG], (14.0, 86.0))
+    assert [one["Colombo"][0] for one in tries] == [8.0, np.inf]
+    assert any(note.startswith(f"{SHOALS_OPENED}: with that water") for note in notes)
+
+
+def test_the_distance_from_land_is_smaller_only_round_the_end_that_needs_it(world):
+    """Busan was left at half a mile, at 20 kn, and shoals were open, because of Incheon."""
+    ends = [INCHEON, BUSAN]
+    chart, _ = add_shoals(world, voyage(ends), SHIP, Sea.calm(), ends)
+    _, note, enclosed = close_shoals(chart_off_land(chart, ends, OFFING), ends)
+    assert (note, enclosed) == ("", (0,))
+    tries, notes = attempts(world, ends)
+    (opened,) = tries
+    assert opened["Incheon"][1] == 15.0 and opened["Busan"][1] < 15.0
+    assert all(np.isfinite(shoals) for shoals, _ in opened.values())
+    assert not any(note.startswith(SHOALS_OPENED) for note in notes)
