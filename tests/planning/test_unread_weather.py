@@ -107,3 +107,25 @@ def test_the_command_line_takes_wind_of_waves(tmp_path, capsys, fill):
     notes = json.loads(said.out)["notes"]
     assert any(WAVES_UNREAD in note for note in notes) == (fill[1] == "wind=0")
     assert any("raises the known waves" in note for note in notes) == (fill[1] == "wind=waves")
+
+
+def test_a_ship_that_reads_the_direction_of_waves_alone_has_a_route():
+    """She was refused for "gaps" in the data: the search did not read the heights."""
+
+    def speed(c):
+        off = np.abs(np.arctan2(np.sin(c.wave_angle), np.cos(c.wave_angle)))
+        return 6.0 * (1.0 - 0.5 * np.exp(-((off / 0.6) ** 2)))
+
+    east = {
+        nm.WAVE_HEIGHT: lambda t, y, x: 2.0 + 0.0 * y,
+        "sea_surface_wave_from_direction": lambda t, y, x: 90.0 + 0.0 * y,
+    }
+    found = plan(
+        Voyage(start=(0.0, 0.0), goal=(0.0, 0.8), depart="2026-01-01"),
+        ship=Ship.from_speed_function(speed),
+        sea=Sea.from_functions(east),
+        chart=Chart.open_water(-1.0, 1.0, -1.0, 2.0),
+    )
+    off = np.linspace(0.0, 1.5, 10_001)  # she tacks at the angle of the best speed made good
+    best = (6.0 * (1.0 - 0.5 * np.exp(-((off / 0.6) ** 2))) * np.cos(off)).max()
+    assert found.best.time_h == pytest.approx(0.8 * 111_319.49 / best / 3600.0, rel=1e-4)

@@ -89,6 +89,17 @@ def test_ships_below_5000_gross_tons_pay_none(tonnage, share, words):
     assert (words is None and not notes) or words in notes[0]
 
 
+def test_allowances_for_a_fuel_of_unknown_carbon_are_refused():
+    """A plan of least cost said that no price of fuel was known, although one was given."""
+    ship = Ship.from_dict(
+        {"name": "x", "speeds_kn": [12], "fuel": {"reference_t_per_day": 24, "price_per_t": 600},
+         "engine": {"reference_speed_kn": 12}, "hull": {"draught_m": 9.0}}
+    )  # fmt: skip
+    with pytest.raises(InputError, match="the CO2 of the fuel is unknown"):
+        ship.with_charges(EuropeanCharges(0.5, 80.0, year=2026))
+    assert ship.with_charges(EuropeanCharges(0.0, 80.0, year=2026)).fuel_terms.charges is not None
+
+
 def test_charges_need_a_price_of_fuel_and_a_share_of_the_rules():
     with pytest.raises(InputError, match="fuel has no price"):
         Ship.simple(8.0, 5.0).with_charges(EuropeanCharges(1.0, 80.0))

@@ -254,13 +254,31 @@ def test_refusals_are_rows(folder, tmp_path):
     assert summary.refusals["voyages"].sum() == 3
 
 
+def test_a_ship_that_cannot_be_made_leaves_the_year_of_the_others(folder, tmp_path):
+    """The summary of 16 voyages stopped because the other ship had no price of fuel."""
+    unpriced = {"name": "unpriced", "speeds_kn": [10], "hull": {"draught_m": 5.0}}
+    (folder / "unpriced.yaml").write_text(yaml.safe_dump(unpriced))
+    study = base(
+        folder,
+        sea="calm",
+        charges={"ets_price": 80, "share_percent": 100},
+        annual={"port_h": 10},
+        axes={"ship": ["handysize-bulker", "unpriced.yaml"], "depart": ["2026-03-01T00:00Z"]},
+    )
+    assert run_study(study, tmp_path / "out").refused == 1
+    summary = summarise_study(tmp_path / "out")
+    (year,) = summary.annual.to_dict("records")
+    assert year["ship"] == "handysize-bulker" and year["voyages_per_year"] > 100.0
+    assert "fuel has no price" in summary.refusals["reason"].iloc[0]
+
+
 @pytest.mark.slow
 def test_a_study_without_any_route_is_summarised_with_the_reason(folder, tmp_path, capsys):
     study = base(folder, axes={"depart": ["2031-01-01T00:00Z", "2031-01-02T00:00Z"]})
     path = folder / "late.yaml"
     path.write_text(yaml.safe_dump(study.to_dict()))
     assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 0
-    assert "2 of them without a route within the limits\n1 of these: " in capsys.readouterr().out
+    assert "2 of them without a route\n1 of these: " in capsys.readouterr().out
     assert main(["study", "summary", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "1 voyage without a route (OutsidePeriodError)" in printed and "2027" in printed

@@ -100,7 +100,7 @@ def _run(arguments: argparse.Namespace) -> int:
     )
     print(
         f"{state.done} of {state.total} voyages have a result in {arguments.out}; "
-        f"{state.new} were planned now, {state.refused} of them without a route within the limits"
+        f"{state.new} were planned now, {state.refused} of them without a route"
     )
     for reason, count in reasons.most_common(1):
         print(f"{count} of these: {reason}")
@@ -134,9 +134,7 @@ def _ready(arguments: argparse.Namespace) -> int:
 
 def _words(state: StudyProgress) -> str:
     left = state.seconds_left
-    text = (
-        f"{state.done} of {state.total} voyages, {state.refused} without a route within the limits"
-    )
+    text = f"{state.done} of {state.total} voyages, {state.refused} without a route"
     if left is None or state.done == state.total:
         return text
     return (

@@ -41,7 +41,7 @@ SEA_VARIABLES_OF: Final[dict[str, frozenset[str]]] = {
     "wind_speed": frozenset({EASTWARD_WIND, NORTHWARD_WIND}),
     "wind_angle": frozenset({EASTWARD_WIND, NORTHWARD_WIND}),
     "wave_height": frozenset({WAVE_HEIGHT}),
-    "wave_angle": frozenset({WAVE_EAST, WAVE_NORTH}),
+    "wave_angle": frozenset({WAVE_EAST, WAVE_NORTH, WAVE_HEIGHT}),  # no direction without waves
     "wave_period": frozenset({WAVE_PERIOD}),
     "current_east": frozenset({EASTWARD_CURRENT}),
     "current_north": frozenset({NORTHWARD_CURRENT}),

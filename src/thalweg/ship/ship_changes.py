@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -65,11 +66,20 @@ def ship_with_charges(ship: Any, charges: EuropeanCharges | None) -> Any:
     Raises
     ------
     InputError
-        If its fuel has no price.
+        If its fuel has no price, or allowances are given and its CO2 is not known.
     """
     if charges is not None:
         charges = charges.for_tonnage(ship.file.hull.gross_tonnage)
-    return replace(ship, terms=ship.fuel_terms.with_charges(charges))
+    terms = ship.fuel_terms.with_charges(charges)
+    pays = charges is not None and charges.voyage_share * charges.allowance_price > 0.0
+    if pays and math.isnan(terms.carbon_outside):
+        raise InputError(
+            "Allowances of the European Union were given, but the CO2 of the fuel is unknown.",
+            "They are paid per tonne of CO2, which follows from the type of the fuel.",
+            "Name the fuel in the ship file, such as fuel.type: vlsfo.",
+            field="fuel.type",
+        )
+    return replace(ship, terms=terms)
 
 
 def ship_with_load_factor(ship: Any, load_factor: float) -> Any:

@@ -263,12 +263,13 @@ def _sortable(column: pd.Series) -> pd.Series:
 def _annual(study: Study, usable: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     if not study.annual or usable.empty:
         return pd.DataFrame()
+    planned = set(usable["id"])  # other rows may have no ship: they state why
     ships: dict[Any, Ship] = {}
     shares: dict[str, float] = {}
     charged: dict[str, bool] = {}
     for row in study.rows():
         label = row.labels.get("ship")
-        if label not in ships:
+        if label not in ships and row.id in planned:
             ships[label] = ship_of_request(row.request, str(study.folder))
         shares[row.id] = share_of_voyage(row.request.get("voyage", {}), study.annual)
         charged[row.id] = bool(row.request.get("charges"))

@@ -200,7 +200,8 @@ def select_station(
         raise InputError(
             f"{source} holds {len(stations)} stations and none is named.",
             f"For example {', '.join(list(names)[:3])}.",
-            "Name one by its id or name (on the command line --station).",
+            "Name one by its id or name: --station of 'thalweg tides predict'; in Python "
+            "read_constituents(file, station=...), whose tide Sea.from_tides applies to an area.",
             file=source,
         )
     if wanted is not None and wanted not in names:
