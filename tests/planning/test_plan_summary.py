@@ -127,7 +127,7 @@ def with_bound(answer, certain, kind="certificate"):
         (
             0.963,
             "certificate, with land, closed shoals",
-            "at most 3.7 % less time is possible in water that is deep enough by the depth layer",
+            "at most 3.7 % less time is possible outside the shoal water that is closed here",
         ),
         (
             0.963,

@@ -204,9 +204,9 @@ class LaneGroup:
         lines = shapely.linestrings(np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1))
         which, zone = self.tree.query(lines)
         lane = zone // len(_TURNS)
-        _, begin, end = inverse(y0[which], x0[which], y1[which], x1[which])
-        there = self._is_against(begin, lane)
-        turned = self._is_against(end + np.pi, lane) & back
+        _, begin, end = inverse(y0, x0, y1, x1)
+        there = self._is_against(begin[which], lane)
+        turned = self._is_against(end[which] + np.pi, lane) & back
         against = np.flatnonzero(there | turned)
         share = self._shares_inside(zone[against], lines[which[against]])
         inside = share > 0.0

@@ -233,7 +233,7 @@ def quality_text(plan: PlanData) -> str:
         )
     deep = ""
     if CLOSED_SHOALS in plan.proof.kind:
-        deep = " in water that is deep enough by the depth layer"
+        deep = " outside the shoal water that is closed here"
     latitudes = plan.proof.kind.partition(IN_WATER)[2].partition(",")[0].partition(";")[0]
     for note in plan.notes:
         if note.startswith(SOUTH_LEFT_OUT):
