@@ -102,7 +102,6 @@ def test_harbours_are_left_by_their_mouth(port, gate, land):
         ("DERSK", (54.1133, 12.1134)),
         ("AUMEL", (-37.8333, 144.9667)),
         ("JPYOK", (35.4500, 139.5833)),
-        ("SEGOT", (57.7097, 11.9547)),
         ("ZACPT", (-33.9167, 18.4167)),
         ("UAODS", (46.4833, 30.7333)),
     ],

@@ -1,8 +1,8 @@
 """Ports by name or UN/LOCODE, from one table of four sources.
 
 The table holds the World Port Index (NGA Pub. 150), ports of searoute 1.6.0 that the index lacks,
-the other names that searoute uses, and a few more names and corrections with their sources
-(``data/port_aliases.csv``). Positions are accurate to a few miles.
+the other names that searoute uses, and a few more ports, names and corrections with their sources
+(``data/port_aliases.csv``, ``data/port_sizes.csv``). Positions are accurate to a few miles.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ class Port:
     country_code : ISO 3166 code of the country.
     locode : UN/LOCODE, empty if the port has none.
     lat, lon : Position [deg].
-    size : Harbour size of the World Port Index: large, medium, small, very small, or empty.
+    size : Harbour size of the World Port Index, or of ``data/port_sizes.csv``: large, medium,
+        small, very small, or empty.
     region : Coast or region of the World Port Index, or empty.
     country_links : Countries to which searoute lists a liner connection.
     """
@@ -346,6 +347,12 @@ def _display_names() -> dict[str, str]:
     return {row["unlocode"]: row["name"] for row in _table("port_display_names.csv")}
 
 
+@cache
+def _sizes() -> dict[str, str]:
+    """Return the sizes of harbours, by UN/LOCODE, where the World Port Index has a wrong one."""
+    return {row["unlocode"]: row["size"] for row in _table("port_sizes.csv")}
+
+
 def _port_from_row(row: dict[str, str]) -> Port:
     return Port(
         row["name"],
@@ -353,7 +360,7 @@ def _port_from_row(row: dict[str, str]) -> Port:
         row["unlocode"],
         float(row["lat"]),
         float(row["lon"]),
-        row["size"],
+        _sizes().get(row["unlocode"], row["size"]),
         row.get("region", ""),
         int(row["country_links"]),
     )
