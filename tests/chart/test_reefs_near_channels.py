@@ -8,6 +8,7 @@ import pytest
 from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.depth.closed_shoals import ClosedShoals, closing_depth_of_areas
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.passages import PASSAGES, find_passages
 from thalweg.chart.ports import PORTS
 from thalweg.core.geodesy import densify, distance
@@ -15,7 +16,11 @@ from thalweg.core.units import KNOT, NAUTICAL_MILE
 
 #: General knowledge, unchecked: positions on reefs and banks, and beside them in channels.
 REEFS = {
-    "Violet Bank": [(49.158, -2.006), (49.149, -2.043), (49.160, -2.070)],  # Seymour, Icho, Green I.
+    "Violet Bank": [
+        (49.158, -2.006),
+        (49.149, -2.043),
+        (49.160, -2.070),
+    ],  # Seymour, Icho, Green I.
     "Ecrehous": [(49.289, -1.927)],
     "Shingles": [(50.680, -1.602), (50.695, -1.580)],
     "Anchor Cay": [(-9.36, 144.12), (-9.39, 144.22)],
@@ -87,8 +92,8 @@ def test_areas_of_exact_outline_stay_closed_beside_channels_and_round_ports():
     closed = ClosedShoals(0.0, (needles.line,), (disc,), area_depth=1.0)
     assert closed.contains(*columns(REEFS["Shingles"])).all()
     assert not closed.contains(*sampled(needles.line)).any()
-    other = ClosedShoals(0.0, (), ((49.289, -1.927, 8.0 * NAUTICAL_MILE),), area_depth=1.0)
-    assert not other.contains(*columns(REEFS["Ecrehous"])).any()  # not exact
+    other = ClosedShoals(0.0, (), ((18.58, -87.15, 20.0 * NAUTICAL_MILE),), area_depth=1.0)
+    assert not other.contains(*columns(REEFS["Banco Chinchorro"])).any()  # not exact
     inside = ClosedShoals(0.0, (), ((50.680, -1.602, 100.0),), area_depth=1.0)
     assert not inside.contains(*columns(REEFS["Shingles"])).any()
 
@@ -172,3 +177,11 @@ def test_speed_limits_of_passages_are_in_the_table():
         "Bisan Seto": 12.0,
         "Uraga (Tokyo Bay)": 12.0,
     }
+
+
+def test_areas_of_exact_outline_do_not_make_the_channels_beside_them_shoal():
+    """A point of the depth layer stands for six miles: yachts to Granville went round Minquiers."""
+    shoals = Shoals(5.0, 1.6)
+    assert shoals.excess(49.15, -1.96, 49.20, -1.96) < 1.0  # Violet Channel
+    assert shoals.excess(50.64, -1.645, 50.70, -1.55) < 1.0  # Needles Channel
+    assert shoals.excess(14.35, -80.30, 14.35, -80.25) > 5.0  # Serrana bank

@@ -50,8 +50,7 @@ class Port:
     country_code : ISO 3166 code of the country.
     locode : UN/LOCODE, empty if the port has none.
     lat, lon : Position [deg].
-    size : Harbour size of the World Port Index, or of ``data/port_sizes.csv``: large, medium,
-        small, very small, or empty.
+    size : Harbour size of the World Port Index: large, medium, small, very small, or empty.
     region : Coast or region of the World Port Index, or empty.
     country_links : Countries to which searoute lists a liner connection.
     """
@@ -71,7 +70,7 @@ class Port:
     @property
     def display_name(self) -> str:
         """The name that people write, such as Bilbao for 'Puerto De Bilbao'."""
-        return _display_names().get(self.locode, self.name)
+        return _corrected("name", "port_display_names.csv").get(self.locode, self.name)
 
     @property
     def label(self) -> str:
@@ -342,15 +341,9 @@ def _table(name: str) -> list[dict[str, str]]:
 
 
 @cache
-def _display_names() -> dict[str, str]:
-    """Return the names that people write, by UN/LOCODE, where the table has another."""
-    return {row["unlocode"]: row["name"] for row in _table("port_display_names.csv")}
-
-
-@cache
-def _sizes() -> dict[str, str]:
-    """Return the sizes of harbours, by UN/LOCODE, where the World Port Index has a wrong one."""
-    return {row["unlocode"]: row["size"] for row in _table("port_sizes.csv")}
+def _corrected(column: str, name: str) -> dict[str, str]:
+    """Return a column of a table of corrections by UN/LOCODE."""
+    return {row["unlocode"]: row[column] for row in _table(name)}
 
 
 def _port_from_row(row: dict[str, str]) -> Port:
@@ -360,7 +353,7 @@ def _port_from_row(row: dict[str, str]) -> Port:
         row["unlocode"],
         float(row["lat"]),
         float(row["lon"]),
-        _sizes().get(row["unlocode"], row["size"]),
+        _corrected("size", "port_sizes.csv").get(row["unlocode"], row["size"]),
         row.get("region", ""),
         int(row["country_links"]),
     )

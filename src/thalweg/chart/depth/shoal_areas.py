@@ -29,8 +29,8 @@ class ShoalArea:
     outline : tuple of (lat, lon)
         Corners [deg]; edges are straight in degrees.
     is_exact : bool
-        Whether the outline holds within a cable or two: then the area is no channel of a passage
-        or a port, however near these are.
+        Whether the outline holds within a quarter of a mile: then the area stays closed beside
+        channels of passages and round ports, too.
     """
 
     name: str
@@ -60,7 +60,9 @@ def _read_shoal_areas() -> tuple[ShoalArea, ...]:
         points = [point.split(",") for point in row["outline"].split()]
         outline = tuple((float(lat), float(lon)) for lat, lon in points)
         is_exact = row["exact"] == "yes"
-        areas.append(ShoalArea(row["name"], float(row["depth_m"]), outline, row["source"], is_exact))
+        areas.append(
+            ShoalArea(row["name"], float(row["depth_m"]), outline, row["source"], is_exact)
+        )
     return tuple(areas)
 
 
