@@ -20,6 +20,8 @@ OFF_RIVER = 12.0  # what a mile off the rivers of the data bank counts
 JOINT = 0.75  # longest joint between the line and a river, or two rivers [nm]
 SPACING = 0.25  # of places on the line [nm]
 TOLERANCE = 0.05  # of the line that is written [nm]
+#: Bends sharper than this [deg] at a leg shorter than this [nm] are joints, not bends of rivers.
+SPIKE, SPIKE_LEG = 120.0, 1.5
 SOURCE = "World Data Bank II rivers (public domain), as in GSHHG f"
 
 
@@ -48,7 +50,21 @@ def along_rivers(line: np.ndarray) -> np.ndarray:
     while way[-1] != 0:
         way.append(int(before[way[-1]]))
     drawn = shapely.LineString(nodes[way[::-1]]).simplify(TOLERANCE)
-    return shapely.get_coordinates(drawn) / scale
+    return _without_spikes(shapely.get_coordinates(drawn)) / scale
+
+
+def _without_spikes(line: np.ndarray) -> np.ndarray:
+    """Return a line [nm] without the vertices at which it doubles back, the sharpest first."""
+    while len(line) > 2:
+        leg = np.diff(line, axis=0)
+        course = np.arctan2(*leg.T)
+        turn = np.degrees(np.abs((np.diff(course) + np.pi) % (2.0 * np.pi) - np.pi))
+        length = np.hypot(*leg.T)
+        turn[np.minimum(length[:-1], length[1:]) >= SPIKE_LEG] = 0.0
+        if turn.max() <= SPIKE:
+            break
+        line = np.delete(line, int(np.argmax(turn)) + 1, axis=0)
+    return line
 
 
 def _rivers_near(line: np.ndarray) -> list[np.ndarray]:

@@ -203,3 +203,15 @@ def test_a_short_way_over_flats_is_stated_where_the_layer_does_not_count():
     assert "and 18.5 m are required" in note
     shallow = Ship.simple(12.0, 0.4, length_m=10.0, breadth_m=3.0)
     assert depth_notes(chart, route, shallow, 0.0) == []
+
+
+def test_drying_areas_are_closed_to_a_yacht_where_the_layer_closes_nothing():
+    """Ships that require 2 m or less had no closed water at all."""
+    yacht, calm = Ship.simple(6.0, 1.6, length_m=12.0), Sea.calm()
+    ends = [Endpoint("A", 49.05, -1.80, 0.0), Endpoint("B", 49.40, -2.20, 0.0)]
+    chart, _ = add_shoals(WORLD, voyage((49.05, -1.80), (49.40, -2.20)), yacht, calm, ends)
+    closed, note = close_shoals(chart, ends)
+    assert note.startswith("Closed: named shoal areas with less than 0.8 m; not within 8 nm")
+    assert closed.legs_blocked(49.145, -2.06, 49.145, -1.98)  # Violet Bank
+    assert not closed.legs_blocked(49.12, -2.09, 49.12, -2.03)  # south of it
+    assert not closed.legs_blocked(49.14, -1.96, 49.19, -1.96)  # Violet Channel

@@ -25,7 +25,7 @@ from thalweg.chart.canals import CANALS, normalised_canal_name, sizes_over_limit
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, line_length
 from thalweg.core.types import FloatArray
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.units import KNOT, NAUTICAL_MILE
 
 #: Ships at least this long [m] do not use passages for small or local ships.
 SMALL_SHIP_LENGTH: Final = 120.0
@@ -62,6 +62,9 @@ class Passage:
     closing_line : tuple of (lat, lon), optional
         Line across from land to land [deg], where islands divide the passage; by default it is
         found at the narrowest place (`thalweg.chart.offing.closing_line`).
+    max_speed : float or None
+        Largest speed over ground that is allowed [m/s]; None where there is no limit or none is
+        known.
 
     Raises
     ------
@@ -83,6 +86,7 @@ class Passage:
     source: str = ""
     closing_line: tuple[Position, ...] = ()
     lanes: tuple[tuple[Position, ...], ...] = ()
+    max_speed: float | None = None
 
     def __post_init__(self) -> None:
         if self.use not in USES or len(self.line) < 2:
@@ -239,6 +243,7 @@ def _passage_of_row(row: dict[str, str]) -> Passage:
         source=row["source"],
         closing_line=read_line(row["closing_line"] or ""),
         lanes=tuple(lanes),
+        max_speed=float(row["max_speed_kn"]) * KNOT if row["max_speed_kn"] else None,
     )
 
 

@@ -1,8 +1,8 @@
 """Ports by name or UN/LOCODE, from one table of four sources.
 
 The table holds the World Port Index (NGA Pub. 150), ports of searoute 1.6.0 that the index lacks,
-the other names that searoute uses, and a few more names and corrections with their sources
-(``data/port_aliases.csv``). Positions are accurate to a few miles.
+the other names that searoute uses, and a few more ports, names and corrections with their sources
+(``data/port_aliases.csv``, ``data/port_sizes.csv``). Positions are accurate to a few miles.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Port:
     @property
     def display_name(self) -> str:
         """The name that people write, such as Bilbao for 'Puerto De Bilbao'."""
-        return _display_names().get(self.locode, self.name)
+        return _corrected("name", "port_display_names.csv").get(self.locode, self.name)
 
     @property
     def label(self) -> str:
@@ -341,9 +341,9 @@ def _table(name: str) -> list[dict[str, str]]:
 
 
 @cache
-def _display_names() -> dict[str, str]:
-    """Return the names that people write, by UN/LOCODE, where the table has another."""
-    return {row["unlocode"]: row["name"] for row in _table("port_display_names.csv")}
+def _corrected(column: str, name: str) -> dict[str, str]:
+    """Return a column of a table of corrections by UN/LOCODE."""
+    return {row["unlocode"]: row[column] for row in _table(name)}
 
 
 def _port_from_row(row: dict[str, str]) -> Port:
@@ -353,7 +353,7 @@ def _port_from_row(row: dict[str, str]) -> Port:
         row["unlocode"],
         float(row["lat"]),
         float(row["lon"]),
-        row["size"],
+        _corrected("size", "port_sizes.csv").get(row["unlocode"], row["size"]),
         row.get("region", ""),
         int(row["country_links"]),
     )

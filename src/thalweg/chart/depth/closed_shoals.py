@@ -1,8 +1,10 @@
 """Shoal water that is closed: where the depth layer has metres less than a ship requires.
 
 Between the points of the layer its depth is interpolated, so that a few metres of difference say
-little; much less water than is required is there for certain. Named shoal areas close as a whole.
-Channels of passages and the water round ports stay open, as the layer shows no dredged channels.
+little; much less water than is required is there for certain. Named shoal areas close as a whole,
+to ships of any draught where they have less than half of what she requires. Channels of passages
+and the water round ports stay open, as the layer shows no dredged channels; only in areas whose
+outline is exact they do not.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ WORLD_BOX: Final[DegreeBox] = (-90.0, 90.0, -180.0, 180.0)
 CLOSED_SHOALS: Final = "closed shoals"  #: how plans and kinds of bounds name them
 _MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
 _SHARE: Final = 0.2
+_SHARE_OF_AREAS: Final = 0.5  # named areas with less than this share of what is required are closed
 _CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
 _CHANNEL_IN_AREAS: Final = 1.5 * NAUTICAL_MILE  # ... where named areas are beside it
 _LEAST_AREA: Final = 1e-4  # smaller shoals of the layer are left out [square degrees]
@@ -57,6 +60,20 @@ def closing_depth(required: float) -> float:
     return round(max(min(required - _MARGIN, (1.0 - _SHARE) * required), 0.0), 1)
 
 
+def closing_depth_of_areas(required: float) -> float:
+    """Return the depth below which named shoal areas are closed [m].
+
+    Parameters
+    ----------
+    required : Depth that a ship requires [m].
+
+    Returns
+    -------
+    float : That of the layer (`closing_depth`), and at least half of what is required.
+    """
+    return max(closing_depth(required), _SHARE_OF_AREAS * required)
+
+
 @dataclass(frozen=True)
 class ClosedShoals:
     """Shoal water that no leg may cross.
@@ -64,10 +81,12 @@ class ClosedShoals:
     Attributes
     ----------
     depth : Water with less than this by the layer, or in named areas, is closed [m].
+    area_depth : Named areas with less than this are closed as well [m].
     channels : tuple of tuple of (lat, lon)
         Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
     discs : tuple of (lat, lon, radius)
-        Discs in which water is open [deg, m]; named areas with a centre inside are open.
+        Discs in which water is open [deg, m]; named areas with a centre inside are open. Other
+        areas with an exact outline are closed in discs and beside channels, too.
     box : South, north, west and east [deg] of the shoals of the layer that count.
     """
 
@@ -75,6 +94,12 @@ class ClosedShoals:
     channels: tuple[tuple[Position, ...], ...] = field(default=(), repr=False)
     discs: tuple[OpenDisc, ...] = ()
     box: DegreeBox = WORLD_BOX
+    area_depth: float = 0.0
+
+    @property
+    def depth_of_areas(self) -> float:
+        """Named areas with less than this are closed [m]."""
+        return max(self.depth, self.area_depth)
 
     @cached_property
     def shapes(self) -> tuple[Any, ...]:
@@ -95,7 +120,7 @@ class ClosedShoals:
     def text(self) -> str:
         """Return everything as text, for a fingerprint."""
         open_water = hashlib.sha256(
-            repr((self.channels, self.discs, self.box)).encode()
+            repr((self.channels, self.discs, self.box, self.depth_of_areas)).encode()
         ).hexdigest()[:16]
         return f"{CLOSED_SHOALS} {self.depth} {open_water}"
 
@@ -120,21 +145,19 @@ def closed_water_index(closed: ClosedShoals, no_go: tuple[Any, ...], cells: int)
 def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
     import shapely
 
-    if closed.depth <= 0.0:
+    if closed.depth_of_areas <= 0.0:
         return ()
     ends = np.array([disc[:2] for disc in closed.discs]).reshape(-1, 2)
     named = [
         area
         for area in SHOAL_AREAS
-        if area.depth < closed.depth and not area.contains(*ends.T).any()
+        if area.depth < closed.depth_of_areas and not area.contains(*ends.T).any()
     ]
-    areas = [area.polygon for area in named]
+    areas = [area.polygon for area in named if not area.is_exact]
+    layer = _outlines_of_layer(closed.depth, closed.box) if closed.depth > 0.0 else ()
     discs = [_disc(*disc) for disc in closed.discs]
-    shapes = []
-    for closed_here, reach in (
-        (_outlines_of_layer(closed.depth, closed.box), _CHANNEL),
-        (areas, _CHANNEL_IN_AREAS),
-    ):
+    shapes = [np.array([area.polygon for area in named if area.is_exact], object)]
+    for closed_here, reach in ((layer, _CHANNEL), (areas, _CHANNEL_IN_AREAS)):
         channels = [_corridor(line, reach) for line in closed.channels]
         shapes += [_without(np.array(closed_here, object), [*discs, *channels])]
     parts = shapely.get_parts(np.concatenate(shapes))

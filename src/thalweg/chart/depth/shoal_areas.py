@@ -1,7 +1,7 @@
 """Named shoal areas whose shallow patches the depth layer of the package misses.
 
 The table is ``data/shoal_areas.csv``, one row an area: name, depth that counts in it, outline,
-source. Outlines whose source says "unchecked" are from general knowledge and were not compared with
+source, and "yes" where the outline is exact. Outlines whose source says "unchecked" are from general knowledge and were not compared with
 a publication. They are for planning, not for navigation.
 """
 
@@ -28,12 +28,16 @@ class ShoalArea:
     depth : Depth that counts where the layer has more [m].
     outline : tuple of (lat, lon)
         Corners [deg]; edges are straight in degrees.
+    is_exact : bool
+        Whether the outline holds within a quarter of a mile: then the area stays closed beside
+        channels of passages and round ports, too.
     """
 
     name: str
     depth: float
     outline: tuple[Position, ...]
     source: str = ""
+    is_exact: bool = False
 
     @cached_property
     def polygon(self) -> Any:
@@ -55,7 +59,10 @@ def _read_shoal_areas() -> tuple[ShoalArea, ...]:
     for row in csv.DictReader(text.splitlines()):
         points = [point.split(",") for point in row["outline"].split()]
         outline = tuple((float(lat), float(lon)) for lat, lon in points)
-        areas.append(ShoalArea(row["name"], float(row["depth_m"]), outline, row["source"]))
+        is_exact = row["exact"] == "yes"
+        areas.append(
+            ShoalArea(row["name"], float(row["depth_m"]), outline, row["source"], is_exact)
+        )
     return tuple(areas)
 
 

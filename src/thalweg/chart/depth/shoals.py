@@ -38,6 +38,9 @@ _LINE_STEP: Final = 2.0 * NAUTICAL_MILE
 _MARGIN: Final = 4.0 * NAUTICAL_MILE
 HARBOUR: Final = 8.0 * NAUTICAL_MILE  #: ... as those so near to a harbour [m]
 _GENTLE: Final = 3.0  # contours: where the next point is deeper, the slope is steep
+#: Areas that points of the layer stand for. Those of exact outline are closed as they are
+#: (`thalweg.chart.depth.closed_shoals`): a point would spread them over the channels beside them.
+_AREAS_OF_POINTS: Final = tuple(area for area in SHOAL_AREAS if not area.is_exact)
 GridPoints: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]  #: rows and columns
 _TILES: Final = 10  # tiles farther away than this are not told apart
 
@@ -124,9 +127,9 @@ def _arrays(shoals: Shoals) -> ShoalArrays:
 def _arrays_without_harbours(shoals: Shoals) -> ShoalArrays:
     code = global_depth_codes().copy()
     deep = _deep_code(shoals)
-    _shoal_inside(code, SHOAL_AREAS)  # so that the points beside the areas are found ...
+    _shoal_inside(code, _AREAS_OF_POINTS)  # so that the points beside the areas are found ...
     code[_beside_shoals(code, shoals)] = deep
-    _shoal_inside(code, SHOAL_AREAS)  # ... and those in them do not become deeper by that
+    _shoal_inside(code, _AREAS_OF_POINTS)  # ... and those in them do not become deeper by that
     for channel in shoals.channels:
         _deepen(code, _points_of_channel(channel), deep)
     depths = np.array([shoals.contour, shoals.least])
@@ -140,7 +143,7 @@ def _with_harbours(arrays: ShoalArrays, shoals: Shoals) -> ShoalArrays:
     """
     code = arrays.code.copy()
     ends = np.array(shoals.harbours).reshape(-1, 2)
-    areas = [_widened(area) for area in SHOAL_AREAS if not area.contains(*ends.T).any()]
+    areas = [_widened(area) for area in _AREAS_OF_POINTS if not area.contains(*ends.T).any()]
     for place in shoals.harbours:
         row, column = _points_near((place,), HARBOUR)
         lat, lon = row / POINTS_OF_DEGREE - 90.0, column / POINTS_OF_DEGREE - 180.0

@@ -54,7 +54,7 @@ def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
         except NoRouteError:
             continue
         crossing = [leg for leg, cut in zip(pairwise(path), _crossed(shapes, *_legs(path))) if cut]
-        if not crossing or _in_named_area(crossing, closed.depth):
+        if not crossing or _in_named_area(crossing, closed.depth_of_areas):
             continue
         length, _ = path_length_and_canals(seas.chart, path)
         try:

@@ -19,6 +19,7 @@ from thalweg.chart.depth.closed_shoals import (
     DegreeBox,
     OpenDisc,
     closing_depth,
+    closing_depth_of_areas,
 )
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
@@ -103,10 +104,10 @@ def close_shoals(
         whatever the shoals: nothing is closed where there is one.
     """
     shoals = chart.zones.shoals
-    depth = 0.0 if shoals is None else closing_depth(shoals.least)
-    if shoals is None or depth <= 0.0:
+    if shoals is None or shoals.least <= 0.0:
         return chart, "", ()
-    closed = ClosedShoals(depth, shoals.channels, box=_region(ends))
+    depth, area_depth = closing_depth(shoals.least), closing_depth_of_areas(shoals.least)
+    closed = ClosedShoals(depth, shoals.channels, box=_region(ends), area_depth=area_depth)
     found = [_open_radius(chart, closed, (end.lat, end.lon)) for end in ends]
     enclosed = tuple(number for number, radius in enumerate(found) if radius is None)
     if enclosed:
@@ -129,9 +130,14 @@ def close_shoals(
         for end, radius in zip(ends, radii)
         if radius > _RADII[0]
     ]
+    water = (
+        f"water with less than {depth:.1f} m by the {NAME}, which is too coarse to close water by "
+        "the draught itself, and named shoal areas"
+        if depth > 0.0
+        else f"named shoal areas with less than {area_depth:.1f} m"
+    )
     note = (
-        f"Closed: water with less than {depth:.1f} m by the {NAME}, which is too "
-        f"coarse to close water by the draught itself, and named shoal areas; not "
+        f"Closed: {water}; not "
         f"within {' and '.join([*wide, '8 nm of other ends'] if wide else ['8 nm of the ends'])} "
         "and in narrow passages."
     )
