@@ -15,6 +15,7 @@ from thalweg.planning.report.given_route_report import (
 )
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.provenance import given_route_warnings
+from thalweg.planning.report.zone_report import over_speed_notes
 from thalweg.planning.request.swapped_degrees import misplaced_name_notes
 from thalweg.route import read_track
 from thalweg.route.route_tables import LEG_KINDS
@@ -63,6 +64,28 @@ def test_approaches_slower_than_ordered_are_stated(chart):
     assert f"take {round(60.0 * miles * (1 / 10 - 1 / 12))} min longer" in note
     quick = SHIP.with_approach_speed(12.0)
     assert not [note for note in notes_of(line, chart, quick) if "along approaches" in note]
+
+
+def test_more_than_the_allowed_speed_in_the_bosporus_is_stated(chart):
+    """A container ship was planned through it at 20 kn without a word."""
+    (strait,) = [one for one in chart.passages if one.name == "Bosporus"]
+
+    def notes(speed):
+        route = evaluate(
+            strait.line, ship=SHIP, sea=Sea.calm(), chart=chart, depart="2026-06-01", speed_kn=speed
+        )
+        return over_speed_notes(chart, route)
+
+    (note,) = notes(15.0)
+    assert note.startswith(
+        "Faster than allowed: 15.0 kn over ground in Bosporus, where the limit is"
+    )
+    assert "10 kn (general knowledge, unchecked)" in note
+    minutes = int(note.partition("arrives ")[2].partition(" min")[0])
+    # 17 nm of the strait and a little more at both ends: 34 min longer at 10 than at 15 kn
+    assert 33 <= minutes <= 46
+    assert notes(10.0) == []
+    assert count_of_dangers([note]) == 1
 
 
 def test_a_passage_that_is_closed_to_the_ship_is_stated(chart):

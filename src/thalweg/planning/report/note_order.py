@@ -31,6 +31,7 @@ from thalweg.planning.report.waiting_report import (
     WAITS,
 )
 from thalweg.planning.report.wave_report import TOO_STEEP
+from thalweg.planning.report.zone_report import OVER_SPEED
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
@@ -68,6 +69,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     CLOSE_TO_LAND,
     (ALONG_COAST, UNKNOWN_STREAM),
     AGAINST_TRAFFIC,
+    OVER_SPEED,
     NO_OFFING_ROUTE,
     (TURNS_BACK, TURNS_ROUND),
     INSHORE_USED,

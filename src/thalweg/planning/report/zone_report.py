@@ -1,4 +1,4 @@
-"""What a plan states about the zones of its chart: emission control areas, and margins."""
+"""What is stated about the zones and passages of a chart: control areas, margins, speed limits."""
 
 from __future__ import annotations
 
@@ -6,14 +6,21 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from thalweg.chart import Chart
+from thalweg.chart.passages import Passage
 from thalweg.chart.zones.emission_control_areas import emission_control_areas
-from thalweg.core.geodesy import densify
-from thalweg.core.units import NAUTICAL_MILE
+from thalweg.core.geodesy import MEAN_RADIUS, densify, geocentric_unit_vectors
+from thalweg.core.time import duration_text
+from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route import Route
+from thalweg.route.passages_used import passages_used
 
+OVER_SPEED: Final = "Faster than allowed"  #: a note on a speed limit begins so
 _SPACING: Final = 5.0 * NAUTICAL_MILE  # between positions that are tested
+_IN_PASSAGE: Final = 2.0 * NAUTICAL_MILE  # of its line, and of land
+_TOLERANCE: Final = 0.2 * KNOT  # above a limit that is not stated
 
 
 def control_area_notes(chart: Chart, routes: Sequence[Route]) -> list[str]:
@@ -47,3 +54,37 @@ def margin_notes(chart: Chart) -> list[str]:
     count = len(chart.zones.margins)
     areas = "1 closed area" if count == 1 else f"{count} closed areas"
     return [f"Keeps {words} nm clear of {areas}."]
+
+
+def over_speed_notes(chart: Chart, route: Route) -> list[str]:
+    """Return a note for each passage with a speed limit that a route is faster than.
+
+    Returns
+    -------
+    list of str : With the limit, the greatest speed over ground, and how much longer the passage
+        takes at the limit.
+    """
+    limited = [one for one in passages_used(chart, route) if one.max_speed is not None]
+    return [note for one in limited for note in _over_speed(chart, route, one)]
+
+
+def _over_speed(chart: Chart, route: Route, passage: Passage) -> list[str]:
+    samples, limit = route.samples, passage.max_speed or np.inf
+    lat, lon = np.asarray(samples["lat"], float), np.asarray(samples["lon"], float)
+    line_lat, line_lon = np.array(passage.line, float).T
+    line_lat, line_lon, _ = densify(line_lat, line_lon, 0.25 * _IN_PASSAGE)
+    middle = cKDTree(geocentric_unit_vectors(line_lat, line_lon))
+    off, _ = middle.query(geocentric_unit_vectors(lat, lon))
+    within = off * MEAN_RADIUS < _IN_PASSAGE
+    within[within] = chart.coastline.shore_distance(lat[within], lon[within]) < _IN_PASSAGE
+    speed = np.asarray(samples["speed_over_ground"], float)
+    fast = within & (speed > limit + _TOLERANCE)
+    if not fast.any():
+        return []
+    step = np.diff(np.asarray(samples["time"], float), append=np.nan)
+    longer = float(np.nansum(np.where(fast, step * (speed / limit - 1.0), 0.0)))
+    return [
+        f"{OVER_SPEED}: {speed[fast].max() / KNOT:.1f} kn over ground in {passage.name}, where the "
+        f"limit is {limit / KNOT:.3g} kn ({passage.source.rpartition(': ')[2]}). At the limit the "
+        f"ship arrives {duration_text(longer)} later: plan with it, or order less speed there."
+    ]
