@@ -291,3 +291,14 @@ def test_the_european_rules_are_those_of_the_year_of_departure(capsys, track, de
     else:  # methane and nitrous oxide count from 2026 on
         part = scored["cost_parts"]["EU charges"] / later["cost_parts"]["EU charges"]
         assert share * 0.97 < part < share
+
+
+def test_the_european_rules_of_a_route_file_are_those_of_its_times(capsys, tmp_path):
+    """A voyage of 2024 was charged in full, as one of 2026."""
+    path = tmp_path / "route.csv"
+    path.write_text(
+        "lat,lon,time\n51.0,1.5,2024-06-01T00:00Z\n51.1,1.6,2024-06-01T01:00Z\n", encoding="utf-8"
+    )
+    asked = ["evaluate", str(path), *SHIP, "--eu-share", "100", "--ets-price", "80"]
+    _, scored = run_json(capsys, *asked)
+    assert scored["prices"]["european_charges"]["year"] == 2024

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli.options import FILLABLE
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegError
 from thalweg.core.units import DAY, HOUR, NAUTICAL_MILE
 
 if TYPE_CHECKING:
@@ -265,9 +266,16 @@ def _european_charges(arguments: argparse.Namespace) -> EuropeanCharges | None:
 
 def _year_of_charges(arguments: argparse.Namespace) -> int:
     """Return the year whose European rules hold: the one given, or that of the departure."""
+    if arguments.eu_year is not None:
+        return int(arguments.eu_year)
     from thalweg.planning.request.voyage_surroundings import year_of_rules
+    from thalweg.route.formats import read_track
 
-    return year_of_rules(vars(arguments)) if arguments.eu_year is None else int(arguments.eu_year)
+    times = vars(arguments)
+    if times.get("route") is not None and times.get("depart") is None:
+        with contextlib.suppress(ThalwegError):  # what is wrong with the file is stated later
+            times = {"depart": read_track(times["route"]).depart}
+    return year_of_rules(times)
 
 
 def position_from_text(text: str) -> Position:
