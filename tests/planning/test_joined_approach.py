@@ -9,7 +9,8 @@ from thalweg.core.geodesy import distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.joined_approach import joined_ways
 from thalweg.planning.request.voyage_endpoints import resolve_places
-from thalweg.planning.sea_distance import sea_distance, world_chart
+from thalweg.planning.sea_distance import sea_distance
+from thalweg.planning.seaways import world_chart
 from thalweg.route import RouteFileOptions, write_route_files
 from thalweg.route.route_tables import LEG_KINDS
 
