@@ -1,8 +1,9 @@
 """Named shoal areas whose shallow patches the depth layer of the package misses.
 
 The table is ``data/shoal_areas.csv``, one row an area: name, depth that counts in it, outline,
-source, and "yes" where the outline is exact. Outlines whose source says "unchecked" are from general knowledge and were not compared with
-a publication. They are for planning, not for navigation.
+source, and "yes" where the outline is exact. Outlines whose source says "unchecked" are from
+general knowledge and were not compared with a publication. They are for planning, not for
+navigation.
 """
 
 from __future__ import annotations
