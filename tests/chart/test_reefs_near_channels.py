@@ -78,7 +78,11 @@ def test_drying_areas_are_closed_to_yachts_where_the_layer_closes_nothing():
     """A depth of 0 gave no shapes."""
     yacht = ClosedShoals(0.0, area_depth=1.0)
     assert yacht.contains(*columns(REEFS["Ecrehous"])).all()
-    assert yacht.contains(*columns([(14.35, -80.275)])).all()  # Serrana bank, dries
+    # outlines that are not exact have the inshore ways of small craft inside, as the Chenal du Four
+    assert not yacht.contains(*columns([(14.35, -80.275), (48.40, -4.80)])).any()
+    there = ClosedShoals(0.0, area_depth=1.0, box=(45.0, 55.0, -6.0, 2.0))
+    elsewhere = ClosedShoals(0.0, area_depth=1.0, box=(-40.0, -30.0, 150.0, 160.0))
+    assert there.contains(*columns(REEFS["Ecrehous"])).all() and not elsewhere.shapes
     assert not yacht.contains(*columns([(41.45, -70.3)])).any()  # Nantucket Sound, 6 m
     assert not yacht.contains(*columns([(53.0, 2.0)])).any()  # Norfolk banks, 4 m
     assert not ClosedShoals(0.0).shapes

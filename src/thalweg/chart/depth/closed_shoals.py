@@ -1,10 +1,10 @@
 """Shoal water that is closed: where the depth layer has metres less than a ship requires.
 
 Between the points of the layer its depth is interpolated, so that a few metres of difference say
-little; much less water than is required is there for certain. Named shoal areas close as a whole,
-to ships of any draught where they have less than half of what she requires. Channels of passages
-and the water round ports stay open, as the layer shows no dredged channels; only in areas whose
-outline is exact they do not.
+little; much less water than is required is there for certain. Named shoal areas close as a whole.
+Channels of passages and the water round ports stay open, as the layer shows no dredged channels.
+Areas of exact outline stay closed there, and are closed to small ships as well: the other outlines
+have the inshore ways of these inside.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from thalweg.chart import geojson_polygons
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.depth.global_depth import global_depth_codes
-from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS, ShoalArea
 from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -37,7 +37,7 @@ WORLD_BOX: Final[DegreeBox] = (-90.0, 90.0, -180.0, 180.0)
 CLOSED_SHOALS: Final = "closed shoals"  #: how plans and kinds of bounds name them
 _MARGIN: Final = 2.0  # of the layer: less than required by so much, and by a share, is closed [m]
 _SHARE: Final = 0.2
-_SHARE_OF_AREAS: Final = 0.5  # named areas with less than this share of what is required are closed
+_SHARE_OF_AREAS: Final = 0.5  # of what is required: exact areas with less are closed
 _CHANNEL: Final = 4.0 * NAUTICAL_MILE  # on both sides of a channel
 _CHANNEL_IN_AREAS: Final = 1.5 * NAUTICAL_MILE  # ... where named areas are beside it
 _LEAST_AREA: Final = 1e-4  # smaller shoals of the layer are left out [square degrees]
@@ -61,7 +61,7 @@ def closing_depth(required: float) -> float:
 
 
 def closing_depth_of_areas(required: float) -> float:
-    """Return the depth below which named shoal areas are closed [m].
+    """Return the depth below which named shoal areas of exact outline are closed [m].
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class ClosedShoals:
     Attributes
     ----------
     depth : Water with less than this by the layer, or in named areas, is closed [m].
-    area_depth : Named areas with less than this are closed as well [m].
+    area_depth : Named areas of exact outline with less than this are closed as well [m].
     channels : tuple of tuple of (lat, lon)
         Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
     discs : tuple of (lat, lon, radius)
@@ -98,7 +98,7 @@ class ClosedShoals:
 
     @property
     def depth_of_areas(self) -> float:
-        """Named areas with less than this are closed [m]."""
+        """Named areas of exact outline with less than this are closed [m]."""
         return max(self.depth, self.area_depth)
 
     @cached_property
@@ -151,7 +151,9 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
     named = [
         area
         for area in SHOAL_AREAS
-        if area.depth < closed.depth_of_areas and not area.contains(*ends.T).any()
+        if area.depth < (closed.depth_of_areas if area.is_exact else closed.depth)
+        and not area.contains(*ends.T).any()
+        and _meets(area, closed.box)
     ]
     areas = [area.polygon for area in named if not area.is_exact]
     layer = _outlines_of_layer(closed.depth, closed.box) if closed.depth > 0.0 else ()
@@ -162,6 +164,14 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
         shapes += [_without(np.array(closed_here, object), [*discs, *channels])]
     parts = shapely.get_parts(np.concatenate(shapes))
     return tuple(parts[shapely.area(parts) > _LEAST_AREA])
+
+
+def _meets(area: ShoalArea, box: DegreeBox) -> bool:
+    """Return whether the bounds of an area meet a box."""
+    south, north, west, east = box
+    left, bottom, right, top = area.polygon.bounds
+    beside = any(left + turn <= east and right + turn >= west for turn in _TURNS)
+    return beside and bottom <= north and top >= south
 
 
 def _without(shapes: NDArray[np.object_], open_water: list[Any]) -> NDArray[np.object_]:
