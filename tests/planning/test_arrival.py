@@ -160,3 +160,37 @@ def test_words_on_an_arrival_that_can_only_be_early():
         "the ship arrives 4 h 54 min before the requested time; leaving a little later or sailing "
         "a little slower, it would arrive after that time"
     )
+
+
+@pytest.mark.slow
+def test_the_latest_departure_over_a_bar_is_that_before_it_closes() -> None:
+    """It was 3 to 7 min before that, and earlier for a later deadline.
+
+    The bar needs 1 m more than its 10 m: until arccos(1 / 1.5) / 2 pi of a tide after high water.
+    """
+    tide, low_water = 12.42 * HOUR, DEPART + 3.0 * HOUR
+
+    def depth(time, lat, lon):
+        return np.where((lon > 3.55) & (lon < 3.60), 10.0, 20.0) + 0.0 * lat
+
+    def level(time, lat, lon):
+        return -1.5 * np.cos(2.0 * np.pi * (time - low_water) / tide) + 0.0 * lat
+
+    sea = Sea.from_functions(
+        {
+            "sea_floor_depth_below_geoid": depth,
+            "sea_surface_height_above_geopotential_datum": level,
+        }
+    )
+    start, goal, arrive = (51.71, 3.45), (51.77, 3.70), DEPART + 14.0 * HOUR
+    found = plan(
+        Voyage(start=start, goal=goal, arrive=arrive, min_ukc_m=1.0),
+        ship=Ship.simple(speed_kn=10.0, draught_m=10.0),
+        sea=sea,
+        chart=Chart.open_water(51.6, 51.9, 3.40, 3.75),
+        resolution=1000.0,
+    )
+    closes = low_water + 0.5 * tide + math.acos(1.0 / 1.5) / (2.0 * math.pi) * tide
+    to_the_bar = 0.6 * float(distance(*start, *goal)) / (10.0 * KNOT)
+    assert found.best.feasible and found.best.waiting_h == pytest.approx(0.0, abs=1e-6)
+    assert -90.0 <= found.best.depart - (closes - to_the_bar) <= 60.0

@@ -13,6 +13,7 @@ from thalweg.planning.report.given_route_report import (
     file_speed_notes,
     given_route_notes,
 )
+from thalweg.planning.report.land_report import tanker_notes
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.provenance import given_route_warnings
 from thalweg.planning.report.zone_report import over_speed_notes
@@ -86,6 +87,22 @@ def test_more_than_the_allowed_speed_in_the_bosporus_is_stated(chart):
     assert 33 <= minutes <= 46
     assert notes(10.0) == []
     assert count_of_dangers([note]) == 1
+
+
+def test_rules_for_tankers_in_a_passage_are_stated_for_tankers(chart):
+    """A VLCC was planned through Messina; that it is closed to her was a note among many."""
+    (strait,) = [one for one in chart.passages if one.name == "Messina"]
+    for kind, count in (("crude oil tanker", 1), ("bulk carrier", 0)):
+        ship = Ship.from_dict(
+            {"name": "x", "speeds_kn": [12], "hull": {"draught_m": 9.0, "type": kind}}
+        )
+        route = evaluate(strait.line, ship=ship, sea=Sea.calm(), chart=chart, depart="2026-06-01")
+        notes = tanker_notes(chart, route, ship)
+        assert len(notes) == count == count_of_dangers(notes)
+    assert "banned for laden tankers over 50,000 GT" in tanker_notes(
+        chart, route, Ship.from_dict({"name": "x", "speeds_kn": [12],
+                                      "hull": {"draught_m": 9.0, "type": "tanker"}})
+    )[0]  # fmt: skip
 
 
 def test_a_passage_that_is_closed_to_the_ship_is_stated(chart):

@@ -61,5 +61,8 @@ def test_departures_of_a_window_are_listed():
     (note,) = window_notes(departures, (3600.0, 1800.0))
     assert note.startswith("Departures in the window and how long the voyage takes")
     assert ", 7 of 13 tried: 1969-12-31 23:00 UTC 3 d 9 h 30 min; 1970-01-02 23:00 UTC" in note
-    assert note.endswith("1970-01-12 23:00 UTC no route.") and note.count(";") == 6
+    assert (
+        note.endswith("1970-01-12 23:00 UTC no arrival in the hours searched.")
+        and note.count(";") == 6
+    )
     assert window_notes(departures[:1], (0.0, 0.0)) == window_notes([], (0.0, 0.0)) == []

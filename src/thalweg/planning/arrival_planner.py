@@ -24,6 +24,7 @@ from thalweg.ship import Ship
 
 #: A plan that arrives this much too early or too late arrives on time [s].
 _EARLY, _LATE = MINUTE, 1.0
+_NEAR_JUMP = 5.0  # of the departure [s]
 _AIM = 20.0  # before the requested time [s]
 _MOST_PLANS = 8
 _LONGEST_RATIO = 10.0  # of the time before the arrival that is searched, over the passage
@@ -62,6 +63,21 @@ class ArrivalRequest:
             track, ship=ship, sea=self.sea, chart=self.chart, depart=depart, strict=False
         )
         return route.arrive if math.isfinite(route.arrive) else math.inf
+
+    def sail_within_limits(self, plan: Plan, ship: Ship, depart: float) -> float:
+        """Return the same for a departure; inf as well where the track breaks a limit then."""
+        track = plan.best.track.replaced(setting=None, speed=None)
+        clearance = required_under_keel_clearance(self.voyage, ship)
+        route = evaluate(
+            track,
+            ship=ship,
+            sea=self.sea,
+            chart=self.chart,
+            depart=depart,
+            min_ukc=clearance,
+            strict=False,
+        )
+        return route.arrive if route.feasible and math.isfinite(route.arrive) else math.inf
 
 
 def plan_arrival(request: ArrivalRequest) -> Plan:
@@ -214,6 +230,7 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
         lambda found, depart: request.sail(found, ship, depart),
         request.arrive,
         (earliest, request.arrive),
+        lambda found, depart: request.sail_within_limits(found, ship, depart),
     )
     depart, found = _solve(search, (guess, plan))
     note = (
@@ -236,13 +253,14 @@ class _Search:
     """A search for the value (departure, or speed with its sign changed) of a given arrival.
 
     The arrival does not decrease with the value. ``plan_at`` plans at a value, ``arrival_on`` sails
-    the track of a plan at another one.
+    the track of a plan at another one; ``within_limits`` gives inf where that breaks a limit.
     """
 
     plan_at: Callable[[float], Plan]
     arrival_on: Callable[[Plan, float], float]
     arrive: float
     limits: tuple[float, float]
+    within_limits: Callable[[Plan, float], float] | None = None
 
     def on_time(self, plan: Plan) -> bool:
         """Return whether a plan arrives in the minute before the time."""
@@ -280,7 +298,31 @@ def _solve(search: _Search, first: tuple[float, Plan]) -> tuple[float, Plan]:
             f"{utc_text(plan.best.arrive)}.",
             "Give the latest arrival with arrive_by, which allows waits.",
         )
-    return best
+    return _at_the_jump(search, best, high)
+
+
+def _at_the_jump(search: _Search, best: tuple[float, Plan], late: float) -> tuple[float, Plan]:
+    """Return the last value at which the track of a plan is open, where arrivals jump.
+
+    Each plan takes seconds, so that plans alone come no nearer than some minutes to the jump.
+    """
+    if search.within_limits is None:
+        return best
+    low, high = best[0], late
+    while high - low > _NEAR_JUMP:
+        middle = 0.5 * (low + high)
+        if search.within_limits(best[1], middle) <= search.arrive + _LATE:
+            low = middle
+        else:
+            high = middle
+    if low - best[0] < _EARLY:
+        return best
+    try:
+        plan = search.plan_at(low - _NEAR_JUMP)
+    except NoRouteError:
+        return best
+    later = plan.best.feasible and best[1].best.arrive < plan.best.arrive <= search.arrive + _LATE
+    return (low - _NEAR_JUMP, plan) if later else best
 
 
 def _next_value(search: _Search, plan: Plan, low: float, high: float) -> float:

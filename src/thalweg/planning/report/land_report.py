@@ -49,6 +49,7 @@ _BESIDE_LINE: Final = 0.5 * NAUTICAL_MILE  # positions so near the line of a pas
 PASSES: Final = "Passes "  #: one on a named passage
 _SHORT_VOYAGE: Final = 200.0 * NAUTICAL_MILE  # has no note on shoals
 UNKNOWN_STREAM: Final = "Strong streams are not known"  #: a note on such a passage begins so
+TANKER_RULES: Final = "Rules for tankers"  #: a note on a passage that has some begins so
 ALONG_COAST: Final = "Runs along a coast"  #: a note on miles of a large ship near land begins so
 _DEEP, _LONG = 12.0, 200.0  # large ships have this draught or length [m]
 _OPEN_COAST: Final = 5.0 * NAUTICAL_MILE
@@ -69,6 +70,7 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
     notes = nearest_land_notes(context.chart, route)
     notes += coasting_notes(context.chart, route, context.ship)
     notes += unknown_stream_notes(context.chart, route, context.sea)
+    notes += tanker_notes(context.chart, route, context.ship)
     for passage in passages_used(context.chart, route):
         facts = [
             f"line at least {passage.half_width / NAUTICAL_MILE:.2g} nm off the coastline",
@@ -116,6 +118,18 @@ def unknown_stream_notes(chart: Chart, route: Route, sea: Sea) -> list[str]:
     ]
 
 
+def tanker_notes(chart: Chart, route: Route, ship: Ship) -> list[str]:
+    """Return a note on each passage with rules for tankers; none for other ships."""
+    if "tanker" not in (ship.file.hull.type or "").casefold():
+        return []
+    return [
+        f"{TANKER_RULES}: {passage.name} ({passage.note}). Check them for this ship and cargo, or "
+        f"plan with --avoid {passage.name!r}."
+        for passage in passages_used(chart, route)
+        if "tanker" in passage.note
+    ]
+
+
 def coasting_notes(chart: Chart, route: Route, ship: Ship) -> list[str]:
     """Return a note on the miles that a large ship sails close along a coast; none for others.
 
@@ -128,9 +142,11 @@ def coasting_notes(chart: Chart, route: Route, ship: Ship) -> list[str]:
     if chart.coastline.is_empty or not len(at_sea):
         return []
     whole = slice(int(at_sea[0]), int(at_sea[-1]) + 2)
-    lat, lon, _leg = densify(route.track.lat[whole], route.track.lon[whole], _STEP_ALONG_COAST)
+    lat, lon, leg = densify(route.track.lat[whole], route.track.lon[whole], _STEP_ALONG_COAST)
+    of_leg = kind[whole.start : whole.stop - 1]
+    in_canal = of_leg[np.append(leg, len(of_leg) - 1)] == LEG_KINDS.index("canal")
     off = np.asarray(chart.coastline.shore_distance(lat, lon, cap=_OPEN_COAST))
-    close = off < _OPEN_COAST
+    close = (off < _OPEN_COAST) & ~in_canal
     for end in (0, -1):
         close &= np.asarray(distance(lat, lon, lat[end], lon[end])) > _ROUND_ENDS
     for passage in passages_used(chart, route):

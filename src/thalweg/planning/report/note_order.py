@@ -19,7 +19,13 @@ from thalweg.planning.report.distance_report import SHOAL_DETOUR
 from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND, TURNS_ROUND
 from thalweg.planning.report.ice_report import REACHES_ICE
-from thalweg.planning.report.land_report import ALONG_COAST, CLOSE_TO_LAND, PASSES, UNKNOWN_STREAM
+from thalweg.planning.report.land_report import (
+    ALONG_COAST,
+    CLOSE_TO_LAND,
+    PASSES,
+    TANKER_RULES,
+    UNKNOWN_STREAM,
+)
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC, INSHORE_USED, LANE_DETOUR
 from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED
 from thalweg.planning.report.unread_weather import WAVES_UNREAD, WIND_UNREAD
@@ -67,7 +73,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (CROSSES_SHOAL, SHOALS_OPENED),
     NEAR_LAND,
     CLOSE_TO_LAND,
-    (ALONG_COAST, UNKNOWN_STREAM),
+    (TANKER_RULES, ALONG_COAST, UNKNOWN_STREAM),
     AGAINST_TRAFFIC,
     OVER_SPEED,
     NO_OFFING_ROUTE,

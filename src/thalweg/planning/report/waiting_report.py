@@ -17,6 +17,7 @@ from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGH
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
+_NOT_SEEN: Final = "no arrival in the hours searched"  # a plan for that departure may look on
 DEPARTURES: Final = "Departures in the window"  #: a note on them begins so
 _SHOWN: Final = 7  # departures of a window
 STRONG_STREAM: Final = "Strong stream"  #: a note on a current nearly as fast as the ship begins so
@@ -239,7 +240,7 @@ def window_notes(
     shown = [departures[round(k * last / steps)] for k in range(steps + 1)]
     texts = [
         f"{utc_text(depart - approach_times[0])} "
-        + (duration_text(time + sum(approach_times)) if math.isfinite(time) else "no route")
+        + (duration_text(time + sum(approach_times)) if math.isfinite(time) else _NOT_SEEN)
         for depart, time in shown
     ]
     some = "" if len(shown) == len(departures) else f", {len(shown)} of {len(departures)} tried"
