@@ -190,7 +190,7 @@ def test_passages_have_limits_and_uses():
     assert "below 120 m" in chacao.ship_restriction(length=180.0)
     assert chacao.ship_restriction(length=80.0) == ""
     assert "closed to ships" in menai.ship_restriction(length=10.0)
-    assert oresund.limits == "draught 7.7 m, air draught 57 m"
+    assert oresund.limits == "draught 7.7 m"
     assert len({passage.name for passage in PASSAGES}) == len(PASSAGES) >= 121
 
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from thalweg import Sea, Ship, Voyage, plan
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.planning.report.land_report import shoal_detour_notes_of_plan
 from thalweg.planning.seaways import world_chart
@@ -39,3 +40,17 @@ def test_the_shorter_way_over_shoals_is_stated(draught, via, miles):
         assert note.startswith("Keeps off shoal water by the global depth layer")
         assert "over that water, by Sunda" in note and "--ignore-shoals" in note
         assert float(note.split(" nm shorter")[0].split()[-1]) == pytest.approx(miles, rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_plan_of_150_miles_states_it_too():
+    """Exuma to Nassau round Eleuthera, 151 nm, where yachts sail over the bank."""
+    yacht = Ship.simple(8.0, 2.0, length_m=15.0)
+    found = plan(
+        Voyage(start=(24.2, -76.45), goal="Nassau", depart="2026-06-01"),
+        ship=yacht,
+        sea=Sea.calm(),
+    )
+    assert found.best.distance_nm > 120.0
+    (note,) = [note for note in found.notes if "plan with --ignore-shoals" in note]
+    assert 40 < int(note.partition("draught is ")[2].partition(" nm")[0]) < 90
