@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.errors import MissingVariableError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.time import parse_time
+from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
+from thalweg.planning.single.controlling_depth import _time_of_high_water
 
 LOW, M2 = 1767236400.0, 44714.0  # 2026-01-01T03:00Z
 AREA = (51.6, 51.9, 3.40, 3.75)
@@ -223,3 +227,19 @@ def test_routes_do_not_pass_a_gap_in_time() -> None:
         plan(Voyage(offing_nm=0.0, **ends, wait=False), **given)
     assert any("no data" in reason for reason in caught.value.reasons)
     assert "gaps" in caught.value.remedy
+
+
+def test_the_high_water_that_is_named_is_the_first_about_as_high() -> None:
+    """A sample a centimetre higher named the high water of the next day."""
+    times = np.arange(0.0, 30.0, 0.5) * 3600.0
+    level = -1.5 * np.cos(2.0 * np.pi * times / (12.4 * 3600.0))
+    level[37:] += 0.02
+    fields = SimpleNamespace(
+        times=times,
+        values=np.stack([np.full(len(times), 10.0), level], axis=-1)[None],
+        channel_index={BED_DEPTH: 0, WATER_LEVEL: 1},
+    )
+    assert _time_of_high_water(fields, 0) == pytest.approx(6.2 * 3600.0, abs=900.0)
+    level[10:15] = np.nan  # without the first
+    fields.values[0, :, 1] = level
+    assert _time_of_high_water(fields, 0) > 17.0 * 3600.0

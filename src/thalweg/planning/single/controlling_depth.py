@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from thalweg.network import Network
 from thalweg.sea import StationFields
 
 _MAX_BISECTIONS = 60
+_AS_HIGH: Final = 0.03  # of the range of the tide: high waters so near the highest are as high
 
 
 class ControllingDepth(NamedTuple):
@@ -125,6 +126,7 @@ def _maximum_over_time(fields: StationFields, channel: int, absent: float) -> Fl
 
 
 def _time_of_high_water(fields: StationFields, station: int) -> float:
+    """Return the time of the first high water about as high as the highest; NaN without a tide."""
     total = np.zeros(len(fields.times))
     for channel in (BED_DEPTH, WATER_LEVEL):
         k = fields.channel_index[channel]
@@ -132,4 +134,10 @@ def _time_of_high_water(fields: StationFields, station: int) -> float:
             total = total + fields.values[station, :, k]
     if np.isnan(total).all() or np.nanmax(total) == np.nanmin(total):
         return math.nan
-    return float(fields.times[int(np.nanargmax(total))])
+    highest, lowest = float(np.nanmax(total)), float(np.nanmin(total))
+    total = np.where(np.isnan(total), -np.inf, total)
+    high = total >= highest - _AS_HIGH * (highest - lowest)
+    first = int(np.argmax(high))
+    ends = np.flatnonzero(~high[first:])
+    around = total[first : first + int(ends[0])] if len(ends) else total[first:]
+    return float(fields.times[first + int(np.argmax(around))])
