@@ -109,3 +109,28 @@ def test_harbours_are_left_by_their_mouth(port, gate, land):
 def test_lines_begin_in_the_harbour_and_not_in_the_town(port, town):
     """Their first 0.9 to 2.5 nm were land."""
     assert least_miles(line_of(port), town) > 0.7
+
+
+#: General knowledge, unchecked: places of the channels, and shoal water that lines crossed.
+CHANNELS = [
+    ("USEYW", (24.470, -81.802), None),  # Main Ship Channel through the reef
+    ("AUMEL", (-38.320, 144.880), (-38.200, 144.800)),  # Hovell Pile; Great Sands
+    ("AUGEX", (-38.320, 144.880), (-38.260, 144.730)),  # not the West Channel
+    ("USOAK", (37.798, -122.378), (37.840, -122.370)),  # west span; north of Treasure Island
+    ("GBSOU", (50.787, -1.318), (50.797, -1.255)),  # West Bramble; Bramble Bank
+    ("GBFAW", (50.787, -1.318), (50.797, -1.255)),
+    ("FRDKK", (51.043, 2.000), (51.085, 2.260)),  # Chenal de l'Ouest; Breedt Bank
+    ("KRPUS", (35.080, 129.108), (35.060, 129.040)),  # east of Yeongdo, not west of it
+    ("Busan New Port", (35.010, 128.793), None),
+    ("CNSZX", (22.557, 114.361), (22.440, 113.900)),  # Mirs Bay, not Deep Bay
+    ("AUFRE", (-31.950, 115.660), None),  # Deep Water Channel
+    ("NLHAR", (53.240, 5.200), (53.255, 5.280)),  # Blauwe Slenk; Griend flats
+]
+
+
+@pytest.mark.parametrize(("port", "channel", "shoal"), CHANNELS)
+def test_lines_follow_the_ship_channels(port, channel, shoal):
+    """They ended inside reefs or led over banks."""
+    line = line_of(port)
+    assert least_miles(line, channel) < 0.4
+    assert shoal is None or least_miles(line, shoal) > 0.6
