@@ -115,11 +115,11 @@ def test_a_distance_names_passages_that_its_draught_closes():
         ("Seward", 10.0, None),
         (
             "Valdez",
-            14.5,
+            12.0,
             "No largest draught in Valdez, US is known, nor the depth along its "
             "approach of 25 nm: ask the port.",
         ),
-        ("Valdez", 12.0, None),
+        ("Valdez", 8.5, None),
     ],
 )
 def test_deep_ships_are_warned_of_ports_that_are_shallow_or_of_unknown_depth(goal, draught, begins):
