@@ -56,20 +56,18 @@ class ArrivalRequest:
         """Return the ship that holds a speed [m/s] as the voyage orders."""
         return with_exact_speed(self.ship, speed / KNOT, self.voyage.hold)
 
-    def sail(self, plan: Plan, ship: Ship, depart: float | None = None) -> float:
-        """Return the arrival [s since 1970] on the track of a plan; inf where it does not end."""
-        track = plan.best.track.replaced(setting=None, speed=None)
-        route = evaluate(
-            track, ship=ship, sea=self.sea, chart=self.chart, depart=depart, strict=False
-        )
-        return route.arrive if math.isfinite(route.arrive) else math.inf
+    def sail(
+        self, plan: Plan, ship: Ship, depart: float | None = None, *, within_limits: bool = False
+    ) -> float:
+        """Return the arrival [s since 1970] on the track of a plan.
 
-    def sail_within_limits(self, plan: Plan, ship: Ship, depart: float) -> float:
-        """Return the same for a departure; inf as well where the track breaks a limit then."""
-        track = plan.best.track.replaced(setting=None, speed=None)
-        clearance = required_under_keel_clearance(self.voyage, ship)
+        Returns
+        -------
+        float : inf where the track does not end, and within limits also where it breaks one.
+        """
+        clearance = required_under_keel_clearance(self.voyage, ship) if within_limits else None
         route = evaluate(
-            track,
+            plan.best.track.replaced(setting=None, speed=None),
             ship=ship,
             sea=self.sea,
             chart=self.chart,
@@ -77,7 +75,8 @@ class ArrivalRequest:
             min_ukc=clearance,
             strict=False,
         )
-        return route.arrive if route.feasible and math.isfinite(route.arrive) else math.inf
+        counts = math.isfinite(route.arrive) and (route.feasible or not within_limits)
+        return route.arrive if counts else math.inf
 
 
 def plan_arrival(request: ArrivalRequest) -> Plan:
@@ -230,7 +229,7 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
         lambda found, depart: request.sail(found, ship, depart),
         request.arrive,
         (earliest, request.arrive),
-        lambda found, depart: request.sail_within_limits(found, ship, depart),
+        lambda found, depart: request.sail(found, ship, depart, within_limits=True),
     )
     depart, found = _solve(search, (guess, plan))
     note = (
