@@ -72,7 +72,7 @@ class DistanceQuestion:
         """Keep the answer."""
         if not self.text:
             return
-        text = json.dumps(None if way is None else _facts_of(way))
+        text = json.dumps(None if way is None else _facts_of(way), allow_nan=False)
         try:
             with _database() as database:
                 database.execute(
