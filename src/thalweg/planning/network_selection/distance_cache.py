@@ -72,8 +72,8 @@ class DistanceQuestion:
         """Keep the answer."""
         if not self.text:
             return
-        text = json.dumps(None if way is None else _facts_of(way), allow_nan=False)
         try:
+            text = json.dumps(None if way is None else _facts_of(way), allow_nan=False)
             with _database() as database:
                 database.execute(
                     "INSERT OR REPLACE INTO answers (question, answer) VALUES (?, ?)",
@@ -83,7 +83,7 @@ class DistanceQuestion:
         except sqlite3.DatabaseError as error:
             if not isinstance(error, sqlite3.OperationalError):  # the file is no database
                 (cache_folder() / _FILE).unlink(missing_ok=True)
-        except OSError:
+        except (OSError, ValueError):
             return
 
     def _key(self) -> str:
