@@ -97,15 +97,15 @@ def plan_off_land(
         return run(context)
     refusal: NoRouteError | None = None
     can_close = False
-    cut_off: tuple[int, ...] = ()  # ends that the distance from land leaves no way from
+    cut_off = False  # whether the distance from land leaves no way from an end
     enclosed: tuple[int, ...] = ()
     waiting = _attempts(ends)
     while waiting:
         attempt = waiting.pop(0)
         which = enclosed or (0, -1)
         if attempt.shoals < _OPEN and attempt.is_of_ends:
-            which = cut_off if attempt.radius > 0.0 else enclosed
-            if not (can_close and which):
+            near_end = cut_off if attempt.radius > 0.0 else bool(enclosed)
+            if not (can_close and near_end):
                 continue  # what closes the way is not near an end
         kept = attempt.share * offing
         chart = chart_off_land(
@@ -117,8 +117,8 @@ def plan_off_land(
             round_ends = {number % len(ends): attempt.shoals for number in which if attempt.shoals}
             chart, note, without_way = close_shoals(chart, ends, round_ends=round_ends)
             can_close = can_close or bool(note or without_way)
-            if without_way:
-                cut_off = enclosed = tuple(n for n in (0, -1) if n % len(ends) in without_way)
+            cut = [n for n in (0, -1) if n % len(ends) in without_way and n not in enclosed]
+            cut_off, enclosed = cut_off or bool(cut), (*enclosed, *cut)
             if not note:
                 continue
             chart, reopened = open_sills(chart, ends)

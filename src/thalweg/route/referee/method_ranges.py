@@ -86,6 +86,7 @@ def method_range_notes(
     if loss is not None:
         if "wind_speed" not in world.ship.reads:
             return []
+        # of the speed that is left: where it is out of range, so is that in calm water
         return [f"{OUT_OF_RANGE}: {note}: {_WHY}" for note in loss.notes(here, speed)]
     route = _UnderWay(world.ship, here, speed, time[known], points.leg[known])
     return [] if waves is None else [*_height_notes(waves, route), *_sector_notes(waves, route)]
