@@ -24,6 +24,7 @@ import functools
 import gzip
 import io
 import itertools
+import re
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -421,7 +422,7 @@ def main() -> None:
     fine, usual = Chart.gshhg("h"), Chart.gshhg("i")
     charts = Charts(fine, usual, fairways())
     hands = by_hand()
-    wanted = set(filter(None, args.only.split(",")))
+    wanted = set(filter(None, re.split(",(?! )", args.only)))
     limits = ship_limits(args.world_port_index) if args.world_port_index else {}
     kept = read_table(args.keep) if args.keep else {}
     ports = tuple(p for p in PORTS.all if kept or not wanted or {p.locode, p.label} & wanted)

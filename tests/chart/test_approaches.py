@@ -117,7 +117,8 @@ GATES = [
     ("Yangon", 16.75, 96.20, 2.0),  # Monkey Point
     ("Bangkok", 13.55, 100.59, 0.7),  # mouth of the Chao Phraya
     ("Ho Chi Minh City", 10.32, 107.03, 0.7),  # Ganh Rai Bay
-    ("Haiphong", 20.77, 106.85, 1.0),
+    ("Haiphong", 20.795, 106.915, 1.0),  # Lach Huyen
+    ("Chiwan", 22.471, 113.876, 0.5),
     ("Hong Kong", 22.28, 114.16, 2.5),  # Victoria Harbour
     ("Guangzhou", 22.80, 113.62, 1.5),  # Bocca Tigris
     ("Shanghai", 31.40, 121.51, 0.7),  # Wusong

@@ -9,7 +9,7 @@ from thalweg.chart import Chart
 from thalweg.chart.depth.global_depth import coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.errors import NoPathError
-from thalweg.core.geodesy import densify, distance
+from thalweg.core.geodesy import densify, direct, distance
 from thalweg.core.limits import Limits
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Voyage, plan
@@ -215,3 +215,17 @@ def test_drying_areas_are_closed_to_a_yacht_where_the_layer_closes_nothing():
     assert closed.legs_blocked(49.145, -2.06, 49.145, -1.98)  # Violet Bank
     assert not closed.legs_blocked(49.12, -2.09, 49.12, -2.03)  # south of it
     assert not closed.legs_blocked(49.14, -1.96, 49.19, -1.96)  # Violet Channel
+
+
+def test_the_box_of_closed_shoals_holds_what_is_near_the_ends_and_not_the_world():
+    """New York to the Channel: 0.6 of 2,800 nm round both ends is half of the globe at most."""
+    ends = [Endpoint("New York", 40.4, -73.8, 0.0), Endpoint("Scilly", 49.7, -6.5, 0.0)]
+    asked = voyage("40.4N 73.8W", "49.7N 6.5W")
+    chart, _ = add_shoals(WORLD, asked, BULKER, Sea.calm(), ends)
+    south, north, west, east = close_shoals(chart, ends)[0].zones.closed_shoals.box
+    course = np.radians(np.arange(0.0, 360.0, 5.0))
+    for end in ends:
+        lat, lon = direct(end.lat, end.lon, course, 0.59 * distance(40.4, -73.8, 49.7, -6.5))
+        assert ((south <= lat) & (lat <= north)).all()
+        assert ((west <= lon) & (lon <= east)).all()
+    assert east - west < 180.0

@@ -2,7 +2,7 @@
 
 The table holds the World Port Index (NGA Pub. 150), ports of searoute 1.6.0 that the index lacks,
 the other names that searoute uses, and a few more ports, names and corrections with their sources
-(``data/port_aliases.csv``, ``data/port_sizes.csv``). Positions are accurate to a few miles.
+(``data/port_aliases.csv``, ``port_sizes.csv``, ``port_positions.csv``), good to a few miles.
 """
 
 from __future__ import annotations
@@ -342,21 +342,17 @@ def _table(name: str) -> list[dict[str, str]]:
 
 @cache
 def _corrected(column: str, name: str) -> dict[str, str]:
-    """Return a column of a table of corrections by UN/LOCODE."""
-    return {row["unlocode"]: row[column] for row in _table(name)}
+    """Return a column of a table of corrections by the first, UN/LOCODE or name and country."""
+    return {next(iter(row.values())): row[column] for row in _table(name)}
 
 
 def _port_from_row(row: dict[str, str]) -> Port:
-    return Port(
-        row["name"],
-        row.get("country_code") or row["unlocode"][:2],
-        row["unlocode"],
-        float(row["lat"]),
-        float(row["lon"]),
-        _corrected("size", "port_sizes.csv").get(row["unlocode"], row["size"]),
-        row.get("region", ""),
-        int(row["country_links"]),
-    )
+    country = row.get("country_code") or row["unlocode"][:2]
+    key, moved = row["unlocode"] or f"{row['name']}, {country}", "port_positions.csv"
+    lat, lon = (float(_corrected(axis, moved).get(key, row[axis])) for axis in ("lat", "lon"))
+    size = _corrected("size", "port_sizes.csv").get(row["unlocode"], row["size"])
+    region, links = row.get("region", ""), int(row["country_links"])
+    return Port(row["name"], country, row["unlocode"], lat, lon, size, region, links)
 
 
 PORTS = Ports()

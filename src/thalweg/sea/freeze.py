@@ -33,7 +33,6 @@ DerivedChannel: TypeAlias = Callable[
 
 POINTS_PER_CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
 POINTS_OF_SOME_TIMES = 1 << 20  #: the same where all stations of some times are computed
-_BLOCK_OF_COPY = 1 << 16  # values copied at a time into another order
 
 
 class SampledSea(Mapping[str, FloatArray]):
@@ -98,11 +97,26 @@ def freeze_station_fields(
     derived = extra or {}
     lat, lon = np.ascontiguousarray(lat, np.float64), np.ascontiguousarray(lon, np.float64)
     index, present = locate_channels(layers, channels, derived)
-    variables = [name for c in present if (name := _variable(c, derived))]
-    times = times_to_freeze(layers, (float(start), float(end)), variables, derived)
+    times = times_to_freeze(
+        layers, (float(start), float(end)), _variables(present, derived), derived
+    )
     values = np.empty((lat.size, times.size, len(present)), np.float32)
+    _fill_stations(values, layers, (times, lat, lon), present, derived)
+    return StationFields(times, values, index)
+
+
+def _fill_stations(
+    values: NDArray[np.float32],
+    layers: Sequence[Layer],
+    points: tuple[FloatArray, FloatArray, FloatArray],
+    present: Sequence[int],
+    derived: Mapping[int, DerivedChannel],
+) -> None:
+    """Write the channels of stations into ``values`` (S, T, K), in parts that fit into memory."""
+    times, lat, lon = points
+    plain = _variables(present, derived)
     if any(
-        layer.is_read_in_parts(layer.variables if derived else variables, times, lat, lon)
+        layer.is_read_in_parts(layer.variables if derived else plain, times, lat, lon)
         for layer in layers
         if isinstance(layer, GridLayer)
     ):  # all stations of some times, so that each part of the files is read once
@@ -110,12 +124,11 @@ def freeze_station_fields(
         for first in range(0, times.size, count):
             part = slice(first, first + count)
             _sample_stations(values[:, part], layers, (times[part], lat, lon), present, derived)
-        return StationFields(times, values, index)
+        return
     rows = max(1, POINTS_PER_CHUNK // times.size)
     for first in range(0, lat.size, rows):
         part = slice(first, first + rows)
         _sample_stations(values[part], layers, (times, lat[part], lon[part]), present, derived)
-    return StationFields(times, values, index)
 
 
 def _box_as_four_numbers(function: Callable[..., GridFields]) -> Callable[..., GridFields]:
@@ -188,22 +201,16 @@ def freeze_grid_fields(
     rows, columns = np.meshgrid(
         south + dlat * np.arange(ny), west + dlon * np.arange(nx), indexing="ij"
     )
-    stations = freeze_station_fields(
-        layers, rows.ravel(), columns.ravel(), start, end, channels, extra=extra
+    derived = extra or {}
+    index, present = locate_channels(layers, channels, derived)
+    times = times_to_freeze(
+        layers, (float(start), float(end)), _variables(present, derived), derived
     )
-    values = _by_time(stations.values)
-    values = values.reshape(stations.times.size, ny, nx, values.shape[2])
-    return GridFields(stations.times, south, dlat, west, dlon, values, stations.channel_index)
-
-
-def _by_time(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return values (S, T, K) as (T, S, K), copied in blocks that fit into the cache."""
-    count, times, channels = values.shape
-    turned = np.empty((times, count, channels), values.dtype)
-    rows = max(1, _BLOCK_OF_COPY // max(times * channels, 1))
-    for first in range(0, count, rows):
-        turned[:, first : first + rows] = values[first : first + rows].transpose(1, 0, 2)
-    return turned
+    values = np.empty((times.size, ny * nx, len(present)), np.float32)
+    by_station = values.transpose(1, 0, 2)  # a view, so that the sea is in memory once
+    _fill_stations(by_station, layers, (times, rows.ravel(), columns.ravel()), present, derived)
+    grid = values.reshape(times.size, ny, nx, len(present))
+    return GridFields(times, south, dlat, west, dlon, grid, index)
 
 
 def locate_channels(
@@ -258,6 +265,11 @@ def times_to_freeze(
             end=end,
         )
     return times
+
+
+def _variables(channels: Sequence[int], extra: Mapping[int, DerivedChannel]) -> list[str]:
+    """Return the variables that are read as they stand, in the order of their channels."""
+    return [name for c in channels if (name := _variable(c, extra))]
 
 
 def _variable(channel: int, extra: Mapping[int, DerivedChannel]) -> str | None:

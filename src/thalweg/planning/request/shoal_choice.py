@@ -158,8 +158,9 @@ def _box_round(lat: FloatArray, lon: FloatArray, margin: float) -> DegreeBox:
     south, top = float(lat.min()) - north, float(lat.max()) + north
     if max(-south, top) > _POLAR:
         return WORLD_BOX
-    east = north / math.cos(math.radians(max(-south, top, 0.0)))
-    west, east = float(lon.min()) - east, float(lon.max()) + east
+    # a circle of this radius reaches farthest east where a meridian touches it
+    reach = np.degrees(np.arcsin(math.sin(math.radians(north)) / np.cos(np.radians(lat))))
+    west, east = float((lon - reach).min()), float((lon + reach).max())
     return (south, top, west, east) if east - west < 360.0 else WORLD_BOX
 
 

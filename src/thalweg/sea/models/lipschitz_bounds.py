@@ -129,8 +129,6 @@ def margins_of_samples(
     A linear interpolation is a mean of values at corners. By Jensen's inequality the mean distance
     of a place from the corners is half a diagonal at most, and that of a time half a step.
     """
-    if not np.isfinite(values).all():
-        return None
     north, east, step = spacing
     found = np.zeros(codes.CHANNEL_COUNT)
     for number, channel in enumerate(channels):
@@ -140,16 +138,18 @@ def margins_of_samples(
             return None
         if "values" in layer.facts:  # uniform
             continue
-        rounding = _ROUNDING * float(np.abs(values[..., number]).max(initial=0.0))
         rates = layer.lipschitz.get(str(name))
         if rates is None or layer.area is not WORLD or layer.period is not None:
             return None
+        of_channel = values[..., number]
+        largest = max(of_channel.max(initial=0.0), -of_channel.min(initial=0.0))
+        rounding = _ROUNDING * float(largest)
         still = layer.time_step == 0.0
         found[channel] = 0.5 * math.hypot(north, east) * rates[0] + rounding
         found[channel] += 0.0 if still else 0.5 * step * rates[1]
     for pair in _VECTORS:
         found[list(pair)] = math.hypot(*found[list(pair)])
-    return found
+    return found if np.isfinite(values).all() else None
 
 
 def greatest_spacing(

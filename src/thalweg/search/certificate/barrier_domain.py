@@ -141,6 +141,7 @@ class BarrierDomain:
             return None
         (enough, sampling), found = unsurpassed, None
         for wanted in sorted({min(cells, _CELLS_FOR_SPEED), cells}):
+            found = None  # its memory is free before the next is read
             found = cls._within_reach(passage, wanted, enough, first)
             if found is None:
                 return None
@@ -192,6 +193,7 @@ class BarrierDomain:
                 ship = replace(ship, top_speed=top)
                 return cls(frozen.arrays, frozen.sampling, speed, ship, frozen.margins)
             fastest = max(speed, least)
+            del frozen  # its memory is free before the next is read
         return None
 
     def has_cells(self, wanted: int) -> bool:
