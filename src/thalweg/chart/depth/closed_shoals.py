@@ -179,10 +179,15 @@ def _without(shapes: NDArray[np.object_], open_water: list[Any]) -> NDArray[np.o
     import shapely
     import shapely.affinity
 
+    if not len(shapes):
+        return shapes
     tree = shapely.STRtree(shapes)
-    for area in open_water:
-        for turn in _TURNS:
-            there = shapely.affinity.translate(area, turn)
+    west, south, east, north = shapely.total_bounds(shapes)
+    left, bottom, right, top = shapely.bounds(np.array(open_water, object)).reshape(-1, 4).T
+    for turn in _TURNS:
+        beside = (left + turn <= east) & (right + turn >= west)
+        for number in np.flatnonzero(beside & (bottom <= north) & (top >= south)).tolist():
+            there = shapely.affinity.translate(open_water[number], turn)
             cut = tree.query(there)
             shapes[cut] = shapely.difference(shapes[cut], there)
     return shapes
