@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 ENDS_IN_SMALL_WATERS = {
     ("Kerch Strait", "last"),
     ("Port Phillip Heads", "last"),
-    ("Maracaibo bar and bridge", "last"),
+    ("Maracaibo bar", "last"),
     ("Rio Grande bar (Lagoa dos Patos)", "last"),
     ("Beagle", "last"),
 }

@@ -69,7 +69,7 @@ def test_shoals_open_round_the_end_that_no_water_leads_to(world):
     assert [one["Chittagong"][0] for one in tries][1:] == [100.0, 250.0]
     (note,) = [note for note in notes if note.startswith(SHOALS_OPENED)]
     assert "within 250 nm of Chittagong:" in note
-    assert any(note.startswith("Closed: water") for note in notes)
+    assert any(note.startswith("Closed: named shoal areas, and water") for note in notes)
 
 
 def test_shoals_open_everywhere_where_the_way_ends_between(world):

@@ -211,7 +211,7 @@ def test_drying_areas_are_closed_to_a_yacht_where_the_layer_closes_nothing():
     ends = [Endpoint("A", 49.05, -1.80, 0.0), Endpoint("B", 49.40, -2.20, 0.0)]
     chart, _ = add_shoals(WORLD, voyage((49.05, -1.80), (49.40, -2.20)), yacht, calm, ends)
     closed, note, _ = close_shoals(chart, ends)
-    assert note.startswith("Closed: named shoal areas with less than 0.8 m; not within 8 nm")
+    assert note == "Closed: named shoal areas with less than 0.8 m."
     assert closed.legs_blocked(49.145, -2.06, 49.145, -1.98)  # Violet Bank
     assert not closed.legs_blocked(49.12, -2.09, 49.12, -2.03)  # south of it
     assert not closed.legs_blocked(49.14, -1.96, 49.19, -1.96)  # Violet Channel

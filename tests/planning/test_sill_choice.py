@@ -37,7 +37,7 @@ def test_a_sill_that_no_table_knows_is_crossed_with_a_note(tmp_path, monkeypatch
     monkeypatch.setattr(shoals_of_draught, "deep_channels", tuple)
     found = planned(tmp_path)
     assert found.routes[0].distance_nm < 1_650.0
-    note = next(note for note in found.notes if "crosses water near" in note)
+    note = next(note for note in found.notes if "was opened to the search" in note)
     assert note.startswith("Check the depth") and "nm longer" in note
 
 

@@ -2,8 +2,9 @@
 
 Between the points of the layer its depth is interpolated, so that a few metres of difference say
 little; much less water than is required is there for certain. Named shoal areas close as a whole.
-Channels of passages and the water round ports stay open, as the layer shows no dredged channels.
-Areas of exact outline stay closed there, and are closed to small ships as well: the other outlines
+Channels of passages and the water round ports stay open, as the layer shows no dredged channels;
+named areas stay closed round ports, too, where these are outside them and the ship can leave. Areas
+of exact outline stay closed everywhere, and are closed to small ships as well: the other outlines
 have the inshore ways of these inside.
 """
 
@@ -85,14 +86,18 @@ class ClosedShoals:
     channels : tuple of tuple of (lat, lon)
         Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
     discs : tuple of (lat, lon, radius)
-        Discs in which water is open [deg, m]; named areas with a centre inside are open. Other
-        areas with an exact outline are closed in discs and beside channels, too.
+        Discs in which shoal water of the layer is open [deg, m]; named areas with a centre inside
+        are open as a whole.
+    area_discs : tuple of (lat, lon, radius)
+        Discs in which named areas are open, but for those of exact outline: these are closed beside
+        channels, too.
     box : South, north, west and east [deg] of the shoals of the layer that count.
     """
 
     depth: float
     channels: tuple[tuple[Position, ...], ...] = field(default=(), repr=False)
     discs: tuple[OpenDisc, ...] = ()
+    area_discs: tuple[OpenDisc, ...] = ()
     box: DegreeBox = WORLD_BOX
     area_depth: float = 0.0
 
@@ -100,6 +105,14 @@ class ClosedShoals:
     def depth_of_areas(self) -> float:
         """Named areas of exact outline with less than this are closed [m]."""
         return max(self.depth, self.area_depth)
+
+    @property
+    def has_rough_areas(self) -> bool:
+        """Whether named areas without an exact outline are closed in the box."""
+        return any(
+            area.depth < self.depth and not area.is_exact and _meets(area, self.box)
+            for area in SHOAL_AREAS
+        )
 
     @cached_property
     def shapes(self) -> tuple[Any, ...]:
@@ -120,7 +133,9 @@ class ClosedShoals:
     def text(self) -> str:
         """Return everything as text, for a fingerprint."""
         open_water = hashlib.sha256(
-            repr((self.channels, self.discs, self.box, self.depth_of_areas)).encode()
+            repr(
+                (self.channels, self.discs, self.area_discs, self.box, self.depth_of_areas)
+            ).encode()
         ).hexdigest()[:16]
         return f"{CLOSED_SHOALS} {self.depth} {open_water}"
 
@@ -157,11 +172,14 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
     ]
     areas = [area.polygon for area in named if not area.is_exact]
     layer = _outlines_of_layer(closed.depth, closed.box) if closed.depth > 0.0 else ()
-    discs = [_disc(*disc) for disc in closed.discs]
     shapes = [np.array([area.polygon for area in named if area.is_exact], object)]
-    for closed_here, reach in ((layer, _CHANNEL), (areas, _CHANNEL_IN_AREAS)):
-        channels = [_corridor(line, reach) for line in closed.channels]
-        shapes += [_without(np.array(closed_here, object), [*discs, *channels])]
+    for closed_here, reach, discs in (
+        (layer, _CHANNEL, closed.discs),
+        (areas, _CHANNEL_IN_AREAS, closed.area_discs),
+    ):
+        open_water = [_disc(*disc) for disc in discs]
+        open_water += [_corridor(line, reach) for line in closed.channels]
+        shapes += [_without(np.array(closed_here, object), open_water)]
     parts = shapely.get_parts(np.concatenate(shapes))
     return tuple(parts[shapely.area(parts) > _LEAST_AREA])
 

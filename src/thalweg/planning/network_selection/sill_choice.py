@@ -72,8 +72,9 @@ def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
     more = f"{deepest / NAUTICAL_MILE:,.0f} nm longer" if np.isfinite(deepest) else "not there"
     place = format_position(*_middle(discs, ends))
     note = (
-        f"{CHECK_DEPTH}: crosses water near {place} that has less than "
-        f"{closed.depth:.1f} m by the {NAME}, which is coarse; a way round it is {more}."
+        f"{CHECK_DEPTH}: water within {_RADIUS / NAUTICAL_MILE:.0f} nm of {place} was opened to "
+        f"the search. It has less than {closed.depth:.1f} m by the {NAME}, which is coarse, and a "
+        f"way round it is {more}."
     )
     closed = replace(closed, discs=(*closed.discs, *discs))
     return replace(chart, zones=replace(zones, closed_shoals=closed)), note

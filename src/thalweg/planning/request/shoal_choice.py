@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from types import MappingProxyType
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -108,39 +108,41 @@ def close_shoals(
         return chart, "", ()
     depth, area_depth = closing_depth(shoals.least), closing_depth_of_areas(shoals.least)
     closed = ClosedShoals(depth, shoals.channels, box=_region(ends), area_depth=area_depth)
-    found = [_open_radius(chart, closed, (end.lat, end.lon)) for end in ends]
-    enclosed = tuple(number for number, radius in enumerate(found) if radius is None)
+    found = [_open_water(chart, closed, (end.lat, end.lon)) for end in ends]
+    enclosed = tuple(number for number, one in enumerate(found) if one is None)
     if enclosed:
         return chart, "", enclosed
-    radii = [max(one or 0.0, round_ends.get(number, 0.0)) for number, one in enumerate(found)]
-    discs: list[OpenDisc] = [
-        (float(end.lat), float(end.lon), radius) for end, radius in zip(ends, radii)
+    opened = [
+        _OpenWater(place, max(radius, more), areas or more > 0.0)
+        for number, (place, radius, areas) in enumerate(filter(None, found))
+        for more in (round_ends.get(number, 0.0),)
     ]
-    for canal in chart.canals:
-        for place in canal.ends:
-            if _in_box(place, closed.box):
-                radius = _open_radius(chart, closed, place)
-                radius = _RADII[1] if radius is None or radius > _RADII[-1] else radius
-                discs.append((float(place[0]), float(place[1]), radius))
-    closed = replace(closed, discs=tuple(discs))
+    for place in (place for canal in chart.canals for place in canal.ends):
+        if _in_box(place, closed.box):
+            water = _open_water(chart, closed, place)
+            if water is None or water.radius > _RADII[-1]:
+                water = _OpenWater(place, _RADII[1], True)
+            opened.append(water)
+    closed = replace(
+        closed,
+        discs=tuple(water.disc for water in opened),
+        area_discs=tuple(water.disc for water in opened if water.areas),
+    )
     if not closed.shapes:
         return chart, "", ()
-    wide = [
-        f"{radius / NAUTICAL_MILE:.0f} nm of {end.name}"
-        for end, radius in zip(ends, radii)
-        if radius > _RADII[0]
-    ]
-    water = (
-        f"water with less than {depth:.1f} m by the {NAME}, which is too coarse to close water by "
-        "the draught itself, and named shoal areas"
-        if depth > 0.0
-        else f"named shoal areas with less than {area_depth:.1f} m"
-    )
     note = (
-        f"Closed: {water}; not "
-        f"within {' and '.join([*wide, '8 nm of other ends'] if wide else ['8 nm of the ends'])} "
-        "and in narrow passages."
+        f"Closed: named shoal areas, and water with less than {depth:.1f} m by the {NAME}, which "
+        "is too coarse to close water by the draught itself; that water is open within 8 nm of the "
+        "ends and in narrow passages."
+        if depth > 0.0
+        else f"Closed: named shoal areas with less than {area_depth:.1f} m."
     )
+    wide = [
+        f"{water.radius / NAUTICAL_MILE:.0f} nm of {end.name}{' (areas, too)' * water.areas}"
+        for end, water in zip(ends, opened)
+        if water.radius > _RADII[0] or water.areas
+    ]
+    note += f" It is open within {' and '.join(wide)}." if wide and depth > 0.0 else ""
     return replace(chart, zones=replace(chart.zones, closed_shoals=closed)), note, ()
 
 
@@ -169,18 +171,36 @@ def _in_box(place: Position, box: DegreeBox) -> bool:
     return south <= place[0] <= north and (place[1] - west) % 360.0 <= east - west
 
 
-def _open_radius(chart: Chart, closed: ClosedShoals, place: Position) -> float | None:
-    """Return the least radius [m] of open water that joins a place to the sea.
+class _OpenWater(NamedTuple):
+    """Open water round a place that joins it to the sea."""
+
+    place: Position
+    radius: float  # [m]
+    areas: bool  # whether named areas without an exact outline are open, too
+
+    @property
+    def disc(self) -> OpenDisc:
+        return float(self.place[0]), float(self.place[1]), self.radius
+
+
+def _open_water(chart: Chart, closed: ClosedShoals, place: Position) -> _OpenWater | None:
+    """Return the least open water that joins a place to the sea; named areas open last.
 
     None where nothing does: the distance from land cuts it off.
     """
-    for radius in _RADII:
-        half = radius + _LOOK_BEYOND
-        box = _box_round(np.array([place[0]]), np.array([place[1]]), half)
-        local = replace(closed, discs=((*place, radius),), box=box)
-        if not local.shapes or _leads_on(chart, place, half, local):
-            return radius
-    return _WIDEST if _leads_on(chart, place, _RADII[-1] + _LOOK_BEYOND, None) else None
+    for areas in (False, True):
+        for radius in _RADII:
+            water = _OpenWater(place, radius, areas)
+            half = radius + _LOOK_BEYOND
+            box = _box_round(np.array([place[0]]), np.array([place[1]]), half)
+            open_areas = (water.disc,) if areas else ()
+            local = replace(closed, discs=(water.disc,), area_discs=open_areas, box=box)
+            if areas and not local.has_rough_areas:
+                continue
+            if not local.shapes or _leads_on(chart, place, half, local):
+                return water
+    leads_on = _leads_on(chart, place, _RADII[-1] + _LOOK_BEYOND, None)
+    return _OpenWater(place, _WIDEST, True) if leads_on else None
 
 
 def _leads_on(chart: Chart, place: Position, half: float, closed: ClosedShoals | None) -> bool:
