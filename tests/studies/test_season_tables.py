@@ -18,7 +18,10 @@ from thalweg.studies.season_tables import (
 )
 from thalweg.studies.study_parts import read_parts
 
-VOYAGE = {"ship": "gunnerus", "voyage": {"start": "A", "goal": "B", "depart": "2026-01-01"}}
+VOYAGE = {
+    "ship": "gunnerus",
+    "voyage": {"start": "Dover", "goal": "Calais", "depart": "2026-01-01"},
+}
 
 
 def departures(count: int, step_h: float = 12.0) -> list[str]:

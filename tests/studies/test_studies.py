@@ -277,7 +277,7 @@ def test_a_study_without_any_route_is_summarised_with_the_reason(folder, tmp_pat
     study = base(folder, axes={"depart": ["2031-01-01T00:00Z", "2031-01-02T00:00Z"]})
     path = folder / "late.yaml"
     path.write_text(yaml.safe_dump(study.to_dict()))
-    assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 0
+    assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 4
     assert "2 of them without a route\n1 of these: " in capsys.readouterr().out
     assert main(["study", "summary", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
@@ -470,3 +470,30 @@ def test_sampled_values_are_columns_of_the_table_of_voyages(tmp_path):
     run_study(study, tmp_path)
     table = summarise_study(tmp_path).voyages
     assert table["speed_kn"].between(12.0, 14.0).all() and table["speed_kn"].nunique() == 2
+
+
+@pytest.mark.parametrize(
+    ("entry", "distribution"),
+    [
+        ("speed_kn", {"normal": [12, -1]}),
+        ("speed_kn", {"uniform": [14, 12]}),
+        ("speed_kn", {"normal": [12, "abc"]}),
+        ("depart", {"normal": ["2026-01-01T00:00Z", -3]}),
+        ("depart", {"uniform": ["2026-01-02T00:00Z", "2026-01-01T00:00Z"]}),
+        ("depart", {"normal": ["soon", 3]}),
+    ],
+)
+def test_distributions_without_draws_are_refused_with_the_study(entry, distribution):
+    """Once a traceback of numpy, after the study was accepted."""
+    given = {"voyage": {"start": "Dover", "goal": "Calais"}, "sample": {entry: distribution}}
+    with pytest.raises(InputError, match=f"The distribution of {entry} is ") as caught:
+        Study.from_dict(given)
+    assert "not below the lower one" in caught.value.possible
+
+
+def test_a_misspelt_port_is_refused_before_the_study_starts(tmp_path):
+    ship = {"voyage": {"start": "Dover", "depart": "2026-01-01T00:00Z"}, "ship": "handysize-bulker"}
+    study = Study.from_dict(ship | {"sea": "calm", "axes": {"goal": ["Calais", "Dovre"]}})
+    with pytest.raises(InputError, match="no port named 'Dovre'"):
+        run_study(study, tmp_path / "out")
+    assert not (tmp_path / "out").exists()

@@ -11,7 +11,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from thalweg.cli.exit_codes import SUCCESS
+from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
 from thalweg.cli.progress import ProgressMessages
 from thalweg.core.errors import InputError
 
@@ -104,7 +104,7 @@ def _run(arguments: argparse.Namespace) -> int:
     )
     for reason, count in reasons.most_common(1):
         print(f"{count} of these: {reason}")
-    return SUCCESS
+    return NO_ROUTE if state.new and state.refused == state.new else SUCCESS
 
 
 def _refuse_ready_name(given: str) -> None:

@@ -23,6 +23,7 @@ from thalweg.studies.annual_figures import ANNUAL_ENTRIES, checked_annual
 from thalweg.studies.study_axes import (
     MOST_ROWS,
     axis_values,
+    distribution_numbers,
     fill_policies,
     plain_data,
     sample_draws,
@@ -381,6 +382,8 @@ def _check_mappings(axes: Any, sample: Any) -> None:
                 "Give one of these.",
                 field=name,
             )
+        elif "choice" not in value:
+            distribution_numbers(name, value)
 
 
 def _is_distribution(value: Any) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -14,6 +15,7 @@ from thalweg.core.units import HOUR
 from thalweg.sea.fill_policies import check_fill
 
 MOST_ROWS: Final = 2_000_000  #: of one study
+_TIMES: Final = ("depart", "arrive", "arrive_by")  # entries that are times
 
 
 def axis_values(name: str, given: Any) -> list[Any]:
@@ -79,19 +81,44 @@ def sample_draws(sample: Mapping[str, Any]) -> list[dict[str, Any]]:
             continue
         key = int.from_bytes(hashlib.blake2b(name.encode(), digest_size=8).digest(), "big")
         generator = np.random.default_rng([int(sample.get("seed", 0)), key])
-        ((kind, numbers),) = distribution.items()
+        ((kind, values),) = distribution.items()
         if kind == "choice":
-            picked = generator.integers(len(numbers), size=count)
-            columns[name] = [numbers[k] for k in picked]
+            picked = generator.integers(len(values), size=count)
+            columns[name] = [values[k] for k in picked]
             continue
-        times = name in ("depart", "arrive", "arrive_by")
-        if times:
-            numbers = [parse_time(numbers[0]), parse_time(numbers[1])] if kind == "uniform" else [
-                parse_time(numbers[0]), float(numbers[1]) * HOUR
-            ]  # fmt: skip
-        draw = getattr(generator, kind)(*map(float, numbers), size=count)
-        columns[name] = [format_time(round(x)) if times else float(x) for x in draw]
+        draw = getattr(generator, kind)(*distribution_numbers(name, distribution), size=count)
+        columns[name] = [format_time(round(x)) if name in _TIMES else float(x) for x in draw]
     return [dict(zip(columns, values)) for values in zip(*columns.values())] or [{}] * count
+
+
+def distribution_numbers(name: str, distribution: Mapping[str, Any]) -> tuple[float, float]:
+    """Return the two numbers of a uniform or normal distribution; times as seconds.
+
+    Raises
+    ------
+    InputError
+        If they are no numbers or times, the upper bound is below the lower one, or the standard
+        deviation is negative.
+    """
+    ((kind, (first, second)),) = distribution.items()
+    times, uniform = name in _TIMES, kind == "uniform"
+    try:
+        low = parse_time(first) if times else float(first)
+        high = parse_time(second) if times and uniform else float(second)
+    except (TypeError, ValueError):  # an InputError is a ValueError, too
+        low = high = math.nan
+    spread = high - low if uniform else high
+    if not (math.isfinite(low) and 0.0 <= spread < math.inf):
+        what = "times" if times else "numbers"
+        deviation = "hours" if times else "a number"
+        raise InputError(
+            f"The distribution of {name} is {dict(distribution)!r}.",
+            f"uniform has two {what}, the upper one not below the lower one; normal a mean and a "
+            f"standard deviation of 0 or more ({deviation}).",
+            "Correct it.",
+            field=name,
+        )
+    return low, high * HOUR if times and not uniform else high
 
 
 def plain_data(value: Any) -> Any:

@@ -17,9 +17,11 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from thalweg.chart.ports import place_positions
 from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, taken_lock
 from thalweg.planning.voyage import Voyage
@@ -104,8 +106,9 @@ def run_study(
     Raises
     ------
     InputError
-        If the folder cannot be written, holds results of another study only, or another process
-        runs a study there; or pyarrow or distributed is not installed.
+        If a place of the study is no port; the folder cannot be written, holds results of another
+        study only, or another process runs a study there; or pyarrow or distributed is not
+        installed.
     """
     require_parquet()
     if chunk < 1 or workers < 0:
@@ -114,9 +117,19 @@ def run_study(
             "Workers are 0 or more, chunks hold 1 row or more.",
             "Correct the numbers.",
         )
+    _check_places(study)
     folder = Path(out)
     with _taken(make_folder(folder)):
         return _run_missing(study, folder, (workers, scheduler, chunk), progress)
+
+
+def _check_places(study: Study) -> None:
+    """Raise `InputError` for a start or goal that is no port: all its voyages would be refused."""
+    given = [study.base.get("voyage", {}), *chain(*study.axes.values())]
+    entries = [entry for entry in given if isinstance(entry, Mapping)]
+    named = [entry.get(end) for entry in entries for end in ("start", "goal")]
+    values = [*named, *chain(*(study.axes.get(end, ()) for end in ("start", "goal")))]
+    place_positions(dict.fromkeys(value for value in values if isinstance(value, str)))
 
 
 @contextlib.contextmanager

@@ -15,12 +15,15 @@ from thalweg.cli import option_values, options
 from thalweg.core.errors import InputError
 from thalweg.core.given_numbers import rounded_or_none
 from thalweg.core.time import format_time
+from thalweg.core.units import DAY
 
 if TYPE_CHECKING:
     from thalweg.sea.tides.constituents import Constituents
     from thalweg.sea.tides.harmonic_analysis import TideAnalysis
 
 MAX_ROWS_SHOWN = 12  #: constituents printed on the terminal
+_YEAR_DAYS = 365.0  # from which a record has all seasons
+_HALF_YEAR_DAYS = 182.6  # from which K2 and S2 are separated
 
 
 def add_command(actions: Any) -> None:
@@ -178,8 +181,22 @@ def _summary(analysis: TideAnalysis, source: str, out: str | None) -> dict[str, 
         "tidal_share": {n: rounded_or_none(analysis.share(n), 6) for n in known},
         "nodes_without_tide": {n: int((~k).sum()) for n, k in known.items()},
         "variables": {n: _rows(constants, n, k) for n, k in known.items()},
+        "notes": _notes_on_length(analysis.start, analysis.end),
         "wrote": out,
     }
+
+
+def _notes_on_length(start: float, end: float) -> list[str]:
+    """Return a note on what a record shorter than a year does not separate."""
+    days = (end - start) / DAY
+    if days >= _YEAR_DAYS:
+        return []
+    near = "K2 is not separated from S2, nor P1 from K1, and " if days < _HALF_YEAR_DAYS else ""
+    return [
+        f"The record has {days:.0f} days: {near}levels that change with the season are taken as "
+        "tides of weeks and months. In other seasons predictions can be wrong by decimetres: give "
+        "a record of a year or longer where the clearance under the keel depends on them."
+    ]
 
 
 def _rows(constants: Constituents, name: str, known: Any) -> list[dict[str, Any]]:
@@ -209,5 +226,7 @@ def _print_analysis(analysis: dict[str, Any]) -> None:
             print(f"  {row['name']:>6}  {row['period_h']:9.4f} h  {size:8.4f}{phase}")
         if len(rows) > MAX_ROWS_SHOWN:
             print(f"  and {len(rows) - MAX_ROWS_SHOWN} more")
+    for note in analysis["notes"]:
+        print(f"note: {note}")
     if analysis["wrote"]:
         print(f"wrote {analysis['wrote']}")

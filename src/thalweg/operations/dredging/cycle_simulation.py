@@ -117,8 +117,12 @@ class Simulator:
             b.load_factor for b in self.both if max(b.full.shortest, b.empty.shortest) < math.inf
         ]
 
-    def run(self) -> list[DredgingCycle]:
+    def run(self, loads: Sequence[float] = ()) -> list[DredgingCycle]:
         """Return the cycles until the volume is moved.
+
+        Parameters
+        ----------
+        loads : Of the cycles; without them, and after the last, those of greatest production.
 
         Raises
         ------
@@ -129,7 +133,8 @@ class Simulator:
         time, left = project.start, work.volume
         with ThreadPoolExecutor(self.workers) as pool:
             while left > _MIN_VOLUME_SHARE * work.hopper:
-                choice = self._choose(pool, time, left)
+                given = loads[len(cycles)] if len(cycles) < len(loads) else None
+                choice = self._choose(pool, time, left, given)
                 cycle = None if choice is None else self._sail(len(cycles) + 1, time, choice)
                 if cycle is None:
                     raise self._too_short(work.volume - left, time)
@@ -141,7 +146,7 @@ class Simulator:
                     self.report(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")
         return cycles
 
-    def _options(self, left: float) -> list[LoadOption]:
+    def options(self, left: float) -> list[LoadOption]:
         """Return the loads for the next cycle, by descending upper bound of production."""
         work = self.project.work
         options = []
@@ -158,19 +163,23 @@ class Simulator:
         options = [o for o in options if o.volume < left] + enough[:1]
         return sorted(options, key=lambda o: -o.bound)
 
-    def _choose(self, pool: ThreadPoolExecutor, time: float, left: float) -> LoadChoice | None:
-        """Return the load with the highest production of its whole cycle."""
+    def _choose(
+        self, pool: ThreadPoolExecutor, time: float, left: float, given: float | None = None
+    ) -> LoadChoice | None:
+        """Return the load with the highest production of its whole cycle, or a given load."""
         best: LoadChoice | None = None
-        for lot in _batches(self._options(left), self.workers):
+        options = self.options(left)
+        options = [o for o in options if o.both.load_factor == given] or options
+        for lot in _batches(options, self.workers):
             least = 0.0 if best is None else best.production
             live = [option for option in lot if option.bound > least]
             count = len(live)
-            for choice in pool.map(self._evaluate_option, [time] * count, live, [least] * count):
+            for choice in pool.map(self.evaluate_option, [time] * count, live, [least] * count):
                 if choice is not None and (best is None or choice.production > best.production):
                     best = choice
         return best
 
-    def _evaluate_option(self, time: float, option: LoadOption, least: float) -> LoadChoice | None:
+    def evaluate_option(self, time: float, option: LoadOption, least: float) -> LoadChoice | None:
         """Return a searched cycle; None if it does not produce more than ``least`` [m3/s]."""
         work, both = self.project.work, option.both
         longest = option.volume / least if least > 0.0 else math.inf

@@ -19,6 +19,7 @@ from thalweg.core.units import DAY, TONNE
 from thalweg.operations.dredging.cycle_records import DredgingCycle, SailedLeg, cycle_record
 from thalweg.operations.dredging.project import Project
 from thalweg.planning.report.squat_report import SQUAT_UNCOUNTED, water_left_text
+from thalweg.planning.report.waiting_report import WAITS, waiting_weather_texts
 from thalweg.ship import Ship
 
 if TYPE_CHECKING:
@@ -221,8 +222,26 @@ def summarise_run(
     broken = sum(not leg.route.feasible for leg in legs)
     if broken:
         notes += (f"The referee finds a limit broken on {broken} of {len(legs)} legs.",)
-    notes += _squat_notes(name, legs, required)
+    notes += _waiting_notes(name, cycles, ship) + _squat_notes(name, legs, required)
     return ProjectRun(name, tuple(cycles), MappingProxyType(totals), notes)
+
+
+def _waiting_notes(name: str, cycles: list[DredgingCycle], ship: Ship) -> tuple[str, ...]:
+    """Return a note where the ship waits at sea in weather above her limits, or unknown."""
+    found = [
+        (leg.waiting, f"cycle {cycle.number}, {texts[0]}")
+        for cycle in cycles
+        for leg in cycle.legs
+        if (texts := waiting_weather_texts(leg.route, ship))
+    ]
+    if not found:
+        return ()
+    return (
+        f"{WAITS} on {len(found)} of {2 * len(cycles)} legs ({name}) in weather above the limits "
+        f"of the ship, or unknown; the longest: {max(found)[1]}. Weather is checked under way "
+        "only. Wait at the site in place of the open sea: then the cycle ends later, and the "
+        "production is lower.",
+    )
 
 
 def _squat_notes(name: str, legs: list[SailedLeg], required: float) -> tuple[str, ...]:

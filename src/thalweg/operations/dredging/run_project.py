@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,8 +14,11 @@ import numpy as np
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import Position, format_position
 from thalweg.core.time import format_time
+from thalweg.core.units import HOUR
 from thalweg.kernels import codes
+from thalweg.operations.dredging.cycle_records import DredgingCycle
 from thalweg.operations.dredging.cycle_simulation import CycleCallback, Simulator
+from thalweg.operations.dredging.load_sequence import loads_of_least_time
 from thalweg.operations.dredging.project import BEST_LOAD_FACTOR, Project
 from thalweg.operations.dredging.project_environment import (
     LINE,
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 OPTIMISED, BASE_CASE = "optimised", "base case"
+_MUCH_WAITING = 0.15  # share of the time from which the loads of all cycles are chosen together
 _MAX_BISECTIONS = 24  # of a depth; accurate to a millimetre
 _MAX_DEPTH = 200.0  # [m]
 
@@ -94,9 +99,11 @@ def run_project(
     ship is back at the loading site. For every load factor the legs out and back are searched
     exactly on the network (`thalweg.search.profile_search`), and the load with the highest
     production is taken, as in van Halem (2019), section 3.2.1. The choice is greedy: the effect on
-    later cycles is ignored. Where the base case takes less time in all, its load on the best routes
-    is tried, and the base case itself is the answer if that takes longer too; a note says so. The
-    referee then evaluates every leg in small steps; its times are those of the project.
+    later cycles is ignored. Where the ship waits more than 15 % of the time, the loads of all
+    cycles are chosen together (`load_sequence`), and a note says how much earlier they end. Where
+    the base case takes less time in all, its load on the best routes is tried, and the base case
+    itself is the answer if that takes longer too; a note says so. The referee then evaluates every
+    leg in small steps; its times are those of the project.
     """
     report: MessageCallback = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
@@ -194,10 +201,33 @@ def _simulate_run(
     if impassable:
         notes = (f"Load factors above {max(possible):g} have no route at any tide.",)
     cycles = simulator.run()
+    if len(factors) > 1 and _waiting_share(cycles) > _MUCH_WAITING:
+        loads = loads_of_least_time(simulator, latest=cycles[-1].end, report=watch.report)
+        together = _run_with_loads(simulator, loads) if loads else cycles
+        if together[-1].end < cycles[-1].end:
+            hours = (cycles[-1].end - together[-1].end) / HOUR
+            notes += (
+                f"The loads ({name}) are those of the whole project that end it first: "
+                f"{hours:.1f} h earlier than with the load of greatest production in each cycle.",
+            )
+            cycles = together
     return summarise_run(
         name, cycles, project=project, ship=environment.ship, required=environment.min_ukc,
         notes=notes,
     )  # fmt: skip
+
+
+def _waiting_share(cycles: Sequence[DredgingCycle]) -> float:
+    """Return the share of the time of cycles in which the ship waits."""
+    waiting = sum(cycle.pauses + sum(leg.waiting for leg in cycle.legs) for cycle in cycles)
+    return waiting / (cycles[-1].end - cycles[0].start)
+
+
+def _run_with_loads(simulator: Simulator, loads: Sequence[float]) -> list[DredgingCycle]:
+    """Return the cycles with given loads, without a report of each."""
+    silent = copy.copy(simulator)
+    silent.on_cycle = None
+    return silent.run(loads)
 
 
 def _check_hopper(hopper: float, ship: Ship) -> None:
