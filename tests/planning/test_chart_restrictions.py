@@ -9,6 +9,7 @@ from thalweg.core.errors import NoRouteError
 from thalweg.network import check_network, lattice, shortest_path
 from thalweg.network.global_grid.ice_limits import northern_limit
 from thalweg.network.network_concatenation import CanalLink, concatenate_networks
+from thalweg.planning.report.zone_report import far_area_notes
 from thalweg.planning.request.chart_restrictions import (
     ICE_LIMIT_NORTH,
     exclude_closed_canals,
@@ -17,6 +18,7 @@ from thalweg.planning.request.chart_restrictions import (
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.sea_distance import sea_distance
+from thalweg.route import Track, evaluate
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 CHART = Chart.gshhg("i")
@@ -187,3 +189,26 @@ def test_murmansk_to_pevek_leads_along_the_coast():
     way = sea_distance("Murmansk", "Pevek")
     assert "Vilkitsky" in way.straits and not way.canals
     assert way.nm == pytest.approx(2400.0, rel=0.04)
+
+
+def test_areas_far_from_the_voyage_are_stated_with_the_order_of_coordinates():
+    """A no-go zone with latitude and longitude exchanged was ignored without a word."""
+    corners = [(52.1, 2.5), (52.6, 2.5), (52.6, 3.0), (52.1, 3.0), (52.1, 2.5)]
+
+    def notes(ring):
+        area = {
+            "type": "Feature",
+            "properties": {"kind": "no-go"},
+            "geometry": {"type": "Polygon", "coordinates": [[list(corner) for corner in ring]]},
+        }
+        chart = Chart.open_water(51.0, 54.0, 2.0, 5.0).with_zones(
+            {"type": "FeatureCollection", "features": [area]}
+        )
+        track = Track([52.0, 53.0], [3.2, 3.4], 0.0)
+        route = evaluate(track, ship=Ship.simple(10.0, 5.0), sea=Sea.calm(), chart=chart)
+        return far_area_notes(chart, route)
+
+    (note,) = notes(corners)
+    assert "the nearest of the 1 begins at 3.0000N 52.1000E, more than 300 nm away" in note
+    assert "latitude and longitude are exchanged" in note
+    assert notes([corner[::-1] for corner in corners]) == []

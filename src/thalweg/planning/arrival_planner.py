@@ -38,14 +38,16 @@ class ArrivalRequest:
     Attributes
     ----------
     voyage : With `arrive`.
-    plan_one : Plans a voyage without `arrive` for a ship.
+    plan_one : Plans a voyage without `arrive` for a ship, with or without its proof.
+    report : Is called with a short text before each trial.
     """
 
     voyage: Voyage
     ship: Ship
     sea: Sea
     chart: Chart
-    plan_one: Callable[[Voyage, Ship], Plan]
+    plan_one: Callable[[Voyage, Ship, bool], Plan]
+    report: Callable[[str], None] = lambda text: None
 
     @property
     def arrive(self) -> float:
@@ -107,7 +109,7 @@ def plan_arrival(request: ArrivalRequest) -> Plan:
     voyage = request.voyage
     if voyage.chooses_speeds:
         limited = replace(voyage, arrive=None, arrive_by=request.arrive)
-        found = request.plan_one(limited, request.ship)
+        found = request.plan_one(limited, request.ship, True)
         note = (
             "The speeds are chosen leg by leg; the ship arrives at the requested time or before it."
         )
@@ -134,8 +136,10 @@ def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
     top, low = float(request.ship.speeds[-1]), _lowest_speed(request)
     fixed = replace(request.voyage, arrive=None, hold=None)
 
-    def plan_at(speed: float) -> Plan:
-        return request.plan_one(fixed, request.at_speed(speed))
+    def plan_at(speed: float, *, proven: bool = False) -> Plan:
+        if not proven:
+            request.report(f"trying {speed / KNOT:.2f} kn")
+        return request.plan_one(fixed, request.at_speed(speed), proven)
 
     def arrival_on(plan: Plan, speed: float) -> float:
         return request.sail(plan, request.at_speed(speed))
@@ -157,6 +161,8 @@ def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
         found = _over_ground(request, found)
         held = ENGINE_ORDER
         speed = -_ground_speed(found.best)
+    else:
+        found = plan_at(-speed, proven=True)
     word = {
         "constant power": "Constant power, that of {:.2f} kn in calm water",
         "constant speed": "Constant speed through water of {:.2f} kn",
@@ -213,8 +219,10 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
     ship = request.at_speed(float(speed))
     fixed = replace(voyage, arrive=None, hold=None, speed_kn=None, depart=0.0)
 
-    def plan_at(depart: float) -> Plan:
-        return request.plan_one(replace(fixed, depart=depart), ship)
+    def plan_at(depart: float, *, proven: bool = False) -> Plan:
+        if not proven:
+            request.report(f"trying the departure {utc_text(depart)}")
+        return request.plan_one(replace(fixed, depart=depart), ship, proven)
 
     first = period_of_data(ship, request.sea)[0]
     ends = [resolve_endpoint(p, request.chart, "place") for p in (voyage.start, voyage.goal)]
@@ -231,7 +239,8 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
         (earliest, request.arrive),
         lambda found, depart: request.sail(found, ship, depart, within_limits=True),
     )
-    depart, found = _solve(search, (guess, plan))
+    depart, _ = _solve(search, (guess, plan))
+    found = plan_at(depart, proven=True)
     note = (
         f"Latest departure {utc_text(depart)} at {found.best.engine_order or 'constant speed'} "
         f"({speed / KNOT:.1f} kn ordered): {_on_time(found, request)}."

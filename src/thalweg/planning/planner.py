@@ -133,7 +133,7 @@ def plan(
 
         return plan_limited_voyage(voyage, ship, sea, chart, replan, **options)
     if voyage.arrive is not None:
-        return _plan_arrival(voyage, ship, sea, chart, replan)
+        return _plan_arrival(voyage, ship, sea, chart, replan, progress)
     ship = with_order(ship, voyage)
     if sea.members:
         return _plan_members(voyage, ship, sea, chart, replan)
@@ -150,15 +150,24 @@ def plan(
     return _plan_with_approaches(context, ends)
 
 
-def _plan_arrival(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan) -> Plan:
-    """Return the plan of a voyage that arrives at a given time."""
+def _plan_arrival(
+    voyage: Voyage,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart,
+    replan: _Replan,
+    progress: Callable[[str], None] | None,
+) -> Plan:
+    """Return the plan of a voyage that arrives at a given time; trials of it have no proof."""
     from thalweg.planning.arrival_planner import ArrivalRequest, plan_arrival
 
-    def plan_at_speed(request: Voyage, with_speed: Ship) -> Plan:
-        return replan(request, ship=with_speed, sea=sea, chart=chart)
+    def plan_one(request: Voyage, with_speed: Ship, proven: bool) -> Plan:
+        without: dict[str, float] = {} if proven else {"proof": 0.0}
+        return replan(request, ship=with_speed, sea=sea, chart=chart, **without)
 
     check_request(voyage, ship, with_wind_speed(ship, sea))
-    return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_at_speed))
+    report = progress or (lambda text: None)
+    return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_one, report))
 
 
 def _plan_members(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, replan: _Replan) -> Plan:

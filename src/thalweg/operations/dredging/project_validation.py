@@ -89,7 +89,10 @@ def positive_number(data: Mapping[str, Any], name: str, default: float | None = 
     value = data.get(name, default)
     if not is_number(value) or value <= 0.0:  # type: ignore[operator]
         raise InputError(
-            f"{name} is {value!r}.", "It is a number above zero.", "Correct it.", field=name
+            f"{name} is {value!r}.",
+            "It is a number above zero, without spaces and separators of thousands.",
+            "Correct it.",
+            field=name,
         )
     return float(value)  # type: ignore[arg-type]
 

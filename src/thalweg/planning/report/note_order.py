@@ -37,7 +37,7 @@ from thalweg.planning.report.waiting_report import (
     WAITS,
 )
 from thalweg.planning.report.wave_report import TOO_STEEP
-from thalweg.planning.report.zone_report import OVER_SPEED
+from thalweg.planning.report.zone_report import FAR_AREAS, OVER_SPEED
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
@@ -76,6 +76,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (TANKER_RULES, ALONG_COAST, UNKNOWN_STREAM),
     AGAINST_TRAFFIC,
     OVER_SPEED,
+    FAR_AREAS,
     NO_OFFING_ROUTE,
     (TURNS_BACK, TURNS_ROUND),
     INSHORE_USED,

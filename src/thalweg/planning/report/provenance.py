@@ -31,7 +31,7 @@ from thalweg.planning.report.waiting_report import (
     waiting_weather_warnings,
 )
 from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
-from thalweg.planning.report.zone_report import over_speed_notes
+from thalweg.planning.report.zone_report import far_area_notes, over_speed_notes
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
@@ -79,7 +79,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     notes += waiting_weather_warnings(route, context.ship)
     notes += heavy_weather_warnings(route, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
-    notes += over_speed_notes(context.chart, route)
+    notes += over_speed_notes(context.chart, route) + far_area_notes(context.chart, route)
     notes += squat_notes(route, context.ship, context.min_ukc)
     if context.needs.limits.depth_checked:
         return notes
@@ -127,6 +127,7 @@ def given_route_warnings(
     notes += waiting_notes(route)
     notes += given_route_notes(route, chart=chart, ship=ship) + file_speed_notes(route)
     notes += squat_notes(route, ship, min_ukc) + over_speed_notes(chart, route)
+    notes += far_area_notes(chart, route)
     if route.min_ukc_m is not None:
         return notes
     return notes + depth_notes(chart, route, ship, min_ukc)

@@ -6,17 +6,20 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+import shapely
 from scipy.spatial import cKDTree
 
 from thalweg.chart import Chart
 from thalweg.chart.passages import Passage
 from thalweg.chart.zones.emission_control_areas import emission_control_areas
-from thalweg.core.geodesy import MEAN_RADIUS, densify, geocentric_unit_vectors
+from thalweg.core.geodesy import MEAN_RADIUS, densify, format_position, geocentric_unit_vectors
 from thalweg.core.time import duration_text
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route import Route
 from thalweg.route.passages_used import passages_used
 
+FAR_AREAS: Final = "No area that was given is near the route"  #: a note on that begins so
+_FAR: Final = 300.0 * NAUTICAL_MILE  # at least; areas so far away can have no effect
 OVER_SPEED: Final = "Faster than allowed"  #: a note on a speed limit begins so
 _SPACING: Final = 5.0 * NAUTICAL_MILE  # between positions that are tested
 _IN_PASSAGE: Final = 2.0 * NAUTICAL_MILE  # of its line, and of land
@@ -54,6 +57,30 @@ def margin_notes(chart: Chart) -> list[str]:
     count = len(chart.zones.margins)
     areas = "1 closed area" if count == 1 else f"{count} closed areas"
     return [f"Keeps {words} nm clear of {areas}."]
+
+
+def far_area_notes(chart: Chart, route: Route) -> list[str]:
+    """Return a note where none of the areas that were given lies near a route; else none."""
+    zones = chart.zones
+    areas = [*zones.no_go, *(area for area, _ in (*zones.penalty, *zones.price))]
+    areas += [*zones.anchorages, *zones.no_waiting]
+    if not areas:
+        return []
+    lat, lon, _ = densify(route.track.lat, route.track.lon, _FAR / 4.0)
+    points = np.concatenate([shapely.get_coordinates(area) for area in areas])
+    tree = cKDTree(geocentric_unit_vectors(lat, lon))
+    away, _ = tree.query(geocentric_unit_vectors(points[:, 1], points[:, 0]))
+    nearest = int(np.argmin(away))
+    reach = max(_FAR, float(route.distance_nm) * NAUTICAL_MILE)
+    inside = shapely.contains_xy(shapely.union_all(areas), lon, lat)
+    if inside.any() or away[nearest] * MEAN_RADIUS < reach:
+        return []
+    place = format_position(points[nearest, 1], points[nearest, 0])
+    return [
+        f"{FAR_AREAS}: the nearest of the {len(areas)} begins at {place}, more than "
+        f"{reach / NAUTICAL_MILE:,.0f} nm away. GeoJSON has the longitude first: see whether "
+        "latitude and longitude are exchanged."
+    ]
 
 
 def over_speed_notes(chart: Chart, route: Route) -> list[str]:
