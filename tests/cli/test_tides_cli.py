@@ -12,6 +12,7 @@ import xarray as xr
 from tests.conftest import data_file
 from thalweg.cli.main import main
 from thalweg.cli.tides import tides_command
+from thalweg.cli.tides.tide_analysis_command import _notes_on_length
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.sea import standard_names as nm
@@ -70,6 +71,16 @@ def test_what_a_reader_sees(capsys, record):
     text = capsys.readouterr().out
     assert "100.0 % of the variance is tidal" in text
     assert "M2    12.4206 h    1.2000    40.0 deg" in text
+    (note,) = [line for line in text.splitlines() if line.startswith("note: ")]
+    assert note.startswith("note: The record has ")
+    assert "days: K2 is not separated from S2, nor P1 from K1, and levels that change" in note
+
+
+@pytest.mark.parametrize(("days", "words"), [(90, "K2 is not"), (200, "200 days: levels")])
+def test_what_a_record_shorter_than_a_year_lacks_is_stated(days, words):
+    (note,) = _notes_on_length(0.0, days * 86400.0)
+    assert words in note
+    assert _notes_on_length(0.0, 366 * 86400.0) == []
 
 
 def test_a_prediction_is_written_to_a_file(capsys, record, tmp_path):

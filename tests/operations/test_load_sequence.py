@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from thalweg import Ship
+from thalweg.operations.dredging import load_sequence
 from thalweg.operations.dredging.cycle_simulation import Simulator
 from thalweg.operations.dredging.load_sequence import loads_of_least_time
 from thalweg.operations.dredging.project import Project
@@ -79,6 +80,18 @@ def test_no_sequence_of_loads_ends_before_that_of_the_whole_project(tmp_path):
     assert found <= min(ends.values()) + 60.0
     assert max(ends.values()) > found + 3600.0
     assert loads_of_least_time(cycles, latest=found - 60.0) is None
+
+
+def test_large_projects_have_fewer_loads_to_choose_from_or_none(tmp_path, monkeypatch):
+    gully(tmp_path / "sill.nc")
+    cycles = simulator(project(tmp_path / "sill.nc", load_factors=[0.25, 0.5, 0.75, 1.0]))
+    monkeypatch.setattr(load_sequence, "MOST_SEARCHES", 8)
+    stated = []
+    loads = loads_of_least_time(cycles, latest=np.inf, report=stated.append)
+    assert stated == ["2 loads for the whole project"]  # of 2 hoppers with 0.5 and 1 each
+    assert set(loads) <= {0.5, 1.0}
+    monkeypatch.setattr(load_sequence, "MOST_SEARCHES", 3)
+    assert loads_of_least_time(cycles, latest=np.inf) is None
 
 
 def test_a_project_that_waits_for_the_tide_has_the_loads_of_the_whole_and_a_note(tmp_path):

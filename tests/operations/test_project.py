@@ -645,6 +645,29 @@ def test_loading_and_unloading_keep_the_wave_limit(tmp_path):
     assert cycle.out.depart == pytest.approx(cycle.start + cycle.loading + cycle.loading_pause)
 
 
+def test_waits_at_sea_above_the_limits_are_stated(tmp_path):
+    """A loaded ship once lay at sea for hours in waves above her limit without a note."""
+    asked = deep_sea(tmp_path / "bed.nc", bed=True)
+    with xr.open_dataset(tmp_path / "bed.nc") as given:
+        flow = given.load()
+    hours, east = np.arange(49), np.arange(9)
+    rough = ((hours >= 2) & (hours <= 12))[:, None, None] & (east >= 4)[None, None, :]
+    height = np.where(rough, 3.0, 0.5) + 0.0 * flow["u"]
+    named = {"standard_name": "sea_surface_wave_significant_height", "units": "m"}
+    flow.assign(hs=height.assign_attrs(named)).to_netcdf(tmp_path / "waves.nc")
+    ship = dict(Ship.load("hopper-dredger").data)
+    ship["limits"] = {"max_significant_wave_height_m": 2.0}
+    given = {"load_factors": [1.0], "min_ukc_m": None, "ship": ship, "volume_m3": 4000}
+    run = sail(**asked | given | {"sea": str(tmp_path / "waves.nc")}).optimised
+    assert run.totals["waiting_share"] == pytest.approx(
+        run.cycles[0].waiting / (run.cycles[-1].end - run.cycles[0].start)
+    )
+    notes = [note for note in run.notes if note.startswith("Waits at sea on ")]
+    lying = max(leg.waiting for leg in run.cycles[0].legs) / 3600.0
+    assert lying > 1.0 and len(notes) == 1
+    assert "above the limit of 2.0 m" in notes[0] and "cycle 1" in notes[0]
+
+
 def test_work_windows_end_after_the_last_pause():
     times, worked = np.array([0.0, 100.0, 200.0, 300.0]), np.array([0.0, 100.0, 100.0, 200.0])
     site = WorkWindows(times, worked)

@@ -194,3 +194,16 @@ def test_the_latest_departure_over_a_bar_is_that_before_it_closes() -> None:
     to_the_bar = 0.6 * float(distance(*start, *goal)) / (10.0 * KNOT)
     assert found.best.feasible and found.best.waiting_h == pytest.approx(0.0, abs=1e-6)
     assert -90.0 <= found.best.depart - (closes - to_the_bar) <= 60.0
+
+
+@pytest.mark.slow
+def test_trials_are_named_on_the_way_and_the_answer_has_a_proof() -> None:
+    stated: list[str] = []
+    voyage = Voyage(**ENDS, depart=DEPART, arrive=DEPART + mid_speed_time(current_kn=1.0))
+    sea = sea_with_current(1.0)
+    found = plan(
+        voyage, ship=SHIP, sea=sea, chart=CHART, resolution=10_000.0, progress=stated.append
+    )
+    trials = [text for text in stated if text.startswith("trying ")]
+    assert len(trials) >= 2 and trials[0] == f"trying {SHIP.speeds[-1] / KNOT:.2f} kn"
+    assert 0.0 <= found.gap < 0.02

@@ -345,6 +345,7 @@ def test_variables_that_are_named_with_an_upload_are_used(client):
         ("studies", {"voyage": {"start": "Hull", "goal": "GBHUL", "depart": "1998-09-01"}}, "goal"),
         ("studies", {"voyage": {"start": "Hull", "goal": "Halifax", "depart": "2020"}}, "depart"),
         ("studies", {"axes": {"depart": ["2020-01-01", "2021-01-01"]}}, "depart"),
+        ("studies", {"sample": {"speed_kn": {"normal": [12, -1]}}}, "speed_kn"),
         ("projects", {"start": "2026-05-01"}, "start"),
     ],
 )

@@ -496,4 +496,4 @@ def test_a_misspelt_port_is_refused_before_the_study_starts(tmp_path):
     study = Study.from_dict(ship | {"sea": "calm", "axes": {"goal": ["Calais", "Dovre"]}})
     with pytest.raises(InputError, match="no port named 'Dovre'"):
         run_study(study, tmp_path / "out")
-    assert not (tmp_path / "out").exists()
+    assert not (tmp_path / "out" / "study.json").exists()

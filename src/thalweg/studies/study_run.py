@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -117,19 +116,9 @@ def run_study(
             "Workers are 0 or more, chunks hold 1 row or more.",
             "Correct the numbers.",
         )
-    _check_places(study)
     folder = Path(out)
     with _taken(make_folder(folder)):
         return _run_missing(study, folder, (workers, scheduler, chunk), progress)
-
-
-def _check_places(study: Study) -> None:
-    """Raise `InputError` for a start or goal that is no port: all its voyages would be refused."""
-    given = [study.base.get("voyage", {}), *chain(*study.axes.values())]
-    entries = [entry for entry in given if isinstance(entry, Mapping)]
-    named = [entry.get(end) for entry in entries for end in ("start", "goal")]
-    values = [*named, *chain(*(study.axes.get(end, ()) for end in ("start", "goal")))]
-    place_positions(dict.fromkeys(value for value in values if isinstance(value, str)))
 
 
 @contextlib.contextmanager
@@ -198,9 +187,14 @@ def has_route(result: Mapping[str, Any]) -> bool:
 
 
 def _check_voyages(study: Study, rows: list[StudyRow]) -> None:
-    """Raise the error of a voyage that is none, before any is planned; a sample may draw some."""
+    """Raise the error of a voyage that is none, before any is planned; a sample may draw some.
+
+    A start or goal that is no port is an error in any case.
+    """
     for row in rows if not study.sample else ():
         Voyage.from_dict(row.request["voyage"])
+    ends = (row.request["voyage"].get(end) for row in rows for end in ("start", "goal"))
+    place_positions(dict.fromkeys(end for end in ends if isinstance(end, str)))
 
 
 def _check_single_ship(study: Study, rows: list[StudyRow]) -> None:

@@ -124,6 +124,11 @@ class DredgingCycle:
         return self.loading_pause + self.unloading_pause
 
     @property
+    def waiting(self) -> float:
+        """Waits on both legs, and pauses at the sites [s]."""
+        return self.pauses + sum(leg.waiting for leg in self.legs)
+
+    @property
     def end(self) -> float:
         """Time at which the ship is back at the loading site [s since 1970-01-01T00:00Z]."""
         return self.back.arrive

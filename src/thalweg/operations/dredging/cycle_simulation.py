@@ -122,7 +122,8 @@ class Simulator:
 
         Parameters
         ----------
-        loads : Of the cycles; without them, and after the last, those of greatest production.
+        loads : Of the cycles; without them, and after the last, those of greatest production. A run
+            with given loads is a trial: `on_cycle` is not called.
 
         Raises
         ------
@@ -139,7 +140,7 @@ class Simulator:
                 if cycle is None:
                     raise self._too_short(work.volume - left, time)
                 cycles.append(cycle)
-                if self.on_cycle is not None:
+                if self.on_cycle is not None and not loads:
                     self.on_cycle(self.name, cycle)
                 time, left = cycle.end, left - cycle.volume
                 if len(cycles) % 10 == 0:

@@ -203,7 +203,7 @@ def summarise_run(
         "unloading_share": sum(c.unloading for c in cycles),
         "sailing_full_share": sum(c.out.duration for c in cycles),
         "sailing_empty_share": sum(c.back.duration for c in cycles),
-        "waiting_share": sum(leg.waiting for leg in legs) + sum(c.pauses for c in cycles),
+        "waiting_share": sum(c.waiting for c in cycles),
     }
     totals: dict[str, Any] = {
         "production_m3_week": volume / duration * WEEK,

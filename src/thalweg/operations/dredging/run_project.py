@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import copy
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -203,7 +202,7 @@ def _simulate_run(
     cycles = simulator.run()
     if len(factors) > 1 and _waiting_share(cycles) > _MUCH_WAITING:
         loads = loads_of_least_time(simulator, latest=cycles[-1].end, report=watch.report)
-        together = _run_with_loads(simulator, loads) if loads else cycles
+        together = simulator.run(loads) if loads else cycles
         if together[-1].end < cycles[-1].end:
             hours = (cycles[-1].end - together[-1].end) / HOUR
             notes += (
@@ -219,15 +218,7 @@ def _simulate_run(
 
 def _waiting_share(cycles: Sequence[DredgingCycle]) -> float:
     """Return the share of the time of cycles in which the ship waits."""
-    waiting = sum(cycle.pauses + sum(leg.waiting for leg in cycle.legs) for cycle in cycles)
-    return waiting / (cycles[-1].end - cycles[0].start)
-
-
-def _run_with_loads(simulator: Simulator, loads: Sequence[float]) -> list[DredgingCycle]:
-    """Return the cycles with given loads, without a report of each."""
-    silent = copy.copy(simulator)
-    silent.on_cycle = None
-    return silent.run(loads)
+    return sum(cycle.waiting for cycle in cycles) / (cycles[-1].end - cycles[0].start)
 
 
 def _check_hopper(hopper: float, ship: Ship) -> None:
