@@ -12,9 +12,17 @@ from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
+from thalweg.planning import planner
 from thalweg.planning.arrival_planner import _on_time
 from thalweg.planning.report.plan_summary import quality_text
 from thalweg.planning.request.requirements import period_of_data
+from thalweg.planning.single.arrival_search import (
+    AIM,
+    EARLY,
+    ArrivalSearch,
+    solve_arrival,
+    whole_answer,
+)
 
 DEPART = 1767225600.0
 LENGTH = float(distance(0.0, 0.0, 0.0, 2.0))
@@ -207,3 +215,47 @@ def test_trials_are_named_on_the_way_and_the_answer_has_a_proof() -> None:
     trials = [text for text in stated if text.startswith("trying ")]
     assert len(trials) >= 2 and trials[0] == f"trying {SHIP.speeds[-1] / KNOT:.2f} kn"
     assert 0.0 <= found.gap < 0.02
+
+
+def _arriving(arrive: float) -> Any:
+    return SimpleNamespace(best=SimpleNamespace(arrive=arrive, feasible=True))
+
+
+def test_the_whole_plan_of_a_trial_that_leaves_later_is_solved_for_again() -> None:
+    """A trial does not wait for lower waves; its whole plan arrives 500 s later."""
+    whole = lambda value: _arriving(value + 500.0)  # noqa: E731
+    search = ArrivalSearch(
+        _arriving, lambda plan, value: value + 500.0, 1000.0, (0.0, 2000.0), EARLY
+    )
+    value, plan = whole_answer(search, 1000.0, whole)
+    assert search.on_time(plan) and value == pytest.approx(500.0 - AIM, abs=1.0)
+    value, plan = whole_answer(search, 400.0, whole)  # early is no reason to plan again
+    assert value == 400.0 and plan.best.arrive == 900.0
+
+
+def test_trials_near_a_jump_of_the_arrivals_are_few() -> None:
+    """Six of eight trials had the same speed in their text."""
+    tried: list[float] = []
+
+    def plan_at(value: float) -> Any:
+        tried.append(value)
+        return _arriving(value if value < 500.3 else value + 3600.0)
+
+    search = ArrivalSearch(plan_at, lambda plan, value: value, 1000.0, (0.0, 1000.0), 1.0)
+    value, plan = solve_arrival(search, (0.0, _arriving(0.0)))
+    assert 400.0 < value < 500.3 and plan.best.arrive == value
+    assert len(tried) <= 8
+    assert sum(abs(one - 500.3) < 1.0 for one in tried) <= 3
+
+
+def test_trials_search_no_later_departure(monkeypatch) -> None:
+    asked: list[bool] = []
+
+    def plan_alone(voyage, ship, sea, chart, options, **settings):
+        asked.append(settings.get("leaves_later", True))
+        return whole_plan(voyage, ship, sea, chart, options, **settings)
+
+    whole_plan = planner._plan_alone
+    monkeypatch.setattr(planner, "_plan_alone", plan_alone)
+    planned(sea_with_current(0.0), depart=DEPART, arrive=DEPART + mid_speed_time())
+    assert asked[-1] and len(asked) > 1 and not any(asked[:-1])

@@ -1,13 +1,18 @@
 """Banks narrower than the network's spacing: planned round, not answered with a breach."""
 
 from datetime import UTC, datetime
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
+from thalweg.kernels import codes
+from thalweg.planning.single import exceeded_limits
+from thalweg.route.route import SPEED_NOT_PREDICTED, Violation
 
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
 WATER = Chart.open_water(49.9, 51.1, 0.5, 3.5)
@@ -63,3 +68,38 @@ def test_a_ship_waits_for_the_tide_at_a_bar_between_the_nodes() -> None:
     assert found.best.feasible
     assert least - 1e-3 < found.best.time_h < 1.0005 * least
     assert found.lower_bound <= found.best.time_h
+
+
+def _scored(*reasons):
+    return SimpleNamespace(violations=tuple(Violation(why, 0.0, 0.0, 0.0) for why in reasons))
+
+
+def test_edges_of_paths_that_exceed_a_limit_are_left_out_before_any_is_refined(monkeypatch):
+    """Each round refined its path: twenty minutes behind a storm."""
+    paths = {"whole": (SPEED_NOT_PREDICTED,), "first": (SPEED_NOT_PREDICTED,), "second": ()}
+    following = {"whole": "first", "first": "second"}
+    monkeypatch.setattr(
+        exceeded_limits, "without_exceeding_edges", lambda context, own, places: following[own]
+    )
+    places = exceeded_limits.exceeded_limits_on_routes(_scored(SPEED_NOT_PREDICTED))
+    left = exceeded_limits.without_exceeding_paths(
+        None, "whole", places, lambda network: _scored(*paths[network])
+    )
+    assert left == "second"
+
+
+def test_a_network_that_has_no_path_left_is_searched_for_the_error(monkeypatch):
+    def path_on(network):
+        raise NoRouteError("No route.", "", "")
+
+    monkeypatch.setattr(
+        exceeded_limits, "without_exceeding_edges", lambda context, own, places: own + 1
+    )
+    assert exceeded_limits.without_exceeding_paths(None, 0, (), path_on) == 1
+
+
+def test_stricter_limits_do_not_help_where_alone_the_speed_is_not_predicted():
+    other = codes.REASONS[codes.WAVE_HEIGHT]
+    help_of = exceeded_limits.stricter_limits_help
+    assert not help_of(_scored(SPEED_NOT_PREDICTED, SPEED_NOT_PREDICTED))
+    assert help_of(_scored(SPEED_NOT_PREDICTED, other)) and help_of(_scored())

@@ -61,13 +61,14 @@ def test_a_stretch_is_tried_with_stricter_motions(monkeypatch, table):
 
     def tried(context, network, ends, window, limits, seas):
         margins.append(context.table.motions_margin)
-        return SimpleNamespace(route=_route(context.table.motions_margin >= 0.05))
+        return SimpleNamespace(route=_route(context.table.motions_margin >= 0.05), result=None)
 
     network = SimpleNamespace(meta=SimpleNamespace(kind="lattice", spacing_m=1000.0))
     monkeypatch.setattr(stretch, "_search_and_refine", tried)
     monkeypatch.setattr(stretch, "_network", lambda *given: network)
     monkeypatch.setattr(stretch, "without_unknown_edges", lambda context, own, gaps: own)
-    monkeypatch.setattr(stretch, "without_exceeding_edges", lambda context, own, places: own)
+    monkeypatch.setattr(stretch, "without_exceeding_paths", lambda context, own, *places: own)
+    monkeypatch.setattr(stretch, "_path_on_network", lambda *given: _route(False))
     voyage = SimpleNamespace(latest_arrival=np.inf, arrive_by=None)
     context = _context(table, voyage=voyage)
     monkeypatch.setattr(PlanningContext, "latest_arrival", np.inf)

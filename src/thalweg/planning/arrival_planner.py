@@ -10,23 +10,27 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.time import duration_text, format_time, utc_text
-from thalweg.core.units import HOUR, KNOT, MINUTE
+from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import Proof
 from thalweg.planning.request.ordered_speed import with_exact_speed
 from thalweg.planning.request.requirements import period_of_data, required_under_keel_clearance
 from thalweg.planning.request.voyage_endpoints import resolve_endpoint
+from thalweg.planning.single.arrival_search import (
+    AIM,
+    EARLY,
+    LATE,
+    ArrivalSearch,
+    solve_arrival,
+    whole_answer,
+)
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate
 from thalweg.route.ground_speed import ENGINE_ORDER, at_constant_ground_speed
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
-#: A plan that arrives this much too early or too late arrives on time [s].
-_EARLY, _LATE = MINUTE, 1.0
-_NEAR_JUMP = 5.0  # of the departure [s]
-_AIM = 20.0  # before the requested time [s]
-_MOST_PLANS = 8
+_NEAR_SPEED = 0.005  # [m/s]: two trials nearer to a jump of the arrivals than that are enough
 _LONGEST_RATIO = 10.0  # of the time before the arrival that is searched, over the passage
 _LEAST_SPEED_RATIO = 0.5  # of the slowest setting of the ship file
 
@@ -38,7 +42,8 @@ class ArrivalRequest:
     Attributes
     ----------
     voyage : With `arrive`.
-    plan_one : Plans a voyage without `arrive` for a ship, with or without its proof.
+    plan_one : Plans a voyage without `arrive` for a ship; trials have no proof, and no later
+        departure where the ship waits in weather above her limits.
     report : Is called with a short text before each trial.
     """
 
@@ -147,22 +152,21 @@ def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
     fastest = plan_at(top)
     _check_possible(request, fastest, (low, top), arrival_on(fastest, low))
     # with the sign changed, so that the arrival grows with the value
-    speed, found = _solve(
-        _Search(
-            lambda value: plan_at(-value),
-            lambda plan, value: arrival_on(plan, -value),
-            request.arrive,
-            (-top, -low),
-        ),
-        (-top, fastest),
+    search = ArrivalSearch(
+        lambda value: plan_at(-value),
+        lambda plan, value: arrival_on(plan, -value),
+        request.arrive,
+        (-top, -low),
+        _NEAR_SPEED,
     )
+    speed, found = solve_arrival(search, (-top, fastest))
     held = found.best.engine_order or "constant speed"
     if request.voyage.hold == "ground":
         found = _over_ground(request, found)
         held = ENGINE_ORDER
         speed = -_ground_speed(found.best)
     else:
-        found = plan_at(-speed, proven=True)
+        speed, found = whole_answer(search, speed, lambda value: plan_at(-value, proven=True))
     word = {
         "constant power": "Constant power, that of {:.2f} kn in calm water",
         "constant speed": "Constant speed through water of {:.2f} kn",
@@ -194,7 +198,7 @@ def _check_possible(
             "The speed is found from that route.",
             "Relax the limits, or give the latest arrival with arrive_by.",
         )
-    if arrive > request.arrive + _LATE:
+    if arrive > request.arrive + LATE:
         late = arrive - request.arrive
         raise NoRouteError(
             f"The ship cannot arrive at {utc_text(request.arrive)}.",
@@ -203,7 +207,7 @@ def _check_possible(
             f"Ask for that time or a later one, or depart about {duration_text(late)} earlier; "
             "without a departure the latest one is found.",
         )
-    if slow_arrival < request.arrive - _EARLY:
+    if slow_arrival < request.arrive - EARLY:
         raise NoRouteError(
             f"The ship arrives before {utc_text(request.arrive)} at every speed considered.",
             f"At {low / KNOT:.1f} kn, the lowest of them, it arrives at {utc_text(slow_arrival)}.",
@@ -229,18 +233,19 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
     away = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon)) / float(speed)
     guess = max(request.arrive - away, first)
     plan = plan_at(guess)
-    if guess == first and plan.best.arrive > request.arrive + _LATE:
+    if guess == first and plan.best.arrive > request.arrive + LATE:
         raise _data_begin_too_late(request, first, plan.best.arrive)
     earliest = max(first, request.arrive - _LONGEST_RATIO * (away + plan.best.time_h * HOUR))
-    search = _Search(
+    search = ArrivalSearch(
         plan_at,
         lambda found, depart: request.sail(found, ship, depart),
         request.arrive,
         (earliest, request.arrive),
+        EARLY,
         lambda found, depart: request.sail(found, ship, depart, within_limits=True),
     )
-    depart, _ = _solve(search, (guess, plan))
-    found = plan_at(depart, proven=True)
+    depart, _ = solve_arrival(search, (guess, plan))
+    depart, found = whole_answer(search, depart, lambda value: plan_at(value, proven=True))
     note = (
         f"Latest departure {utc_text(depart)} at {found.best.engine_order or 'constant speed'} "
         f"({speed / KNOT:.1f} kn ordered): {_on_time(found, request)}."
@@ -256,106 +261,12 @@ def _data_begin_too_late(request: ArrivalRequest, first: float, arrive: float) -
     )
 
 
-@dataclass(frozen=True)
-class _Search:
-    """A search for the value (departure, or speed with its sign changed) of a given arrival.
-
-    The arrival does not decrease with the value. ``plan_at`` plans at a value, ``arrival_on`` sails
-    the track of a plan at another one; ``within_limits`` gives inf where that breaks a limit.
-    """
-
-    plan_at: Callable[[float], Plan]
-    arrival_on: Callable[[Plan, float], float]
-    arrive: float
-    limits: tuple[float, float]
-    within_limits: Callable[[Plan, float], float] | None = None
-
-    def on_time(self, plan: Plan) -> bool:
-        """Return whether a plan arrives in the minute before the time."""
-        return plan.best.feasible and -_EARLY <= plan.best.arrive - self.arrive <= _LATE
-
-
-def _solve(search: _Search, first: tuple[float, Plan]) -> tuple[float, Plan]:
-    """Return the value and the plan that arrives in time; where arrivals jump, the one before."""
-    value, plan = first
-    low, high = search.limits
-    best: tuple[float, Plan] | None = None
-    for _ in range(_MOST_PLANS):
-        if search.on_time(plan):
-            return value, plan
-        if plan.best.feasible and plan.best.arrive <= search.arrive + _LATE:
-            low = max(low, value)
-            if best is None or plan.best.arrive > best[1].best.arrive:
-                best = value, plan
-        else:
-            high = min(high, value)
-        if high - low <= 1e-6 * max(abs(low), 1.0) and high - low < _EARLY:
-            break
-        value = _next_value(search, plan, low, high)
-        try:
-            plan = search.plan_at(value)
-        except NoRouteError:
-            high = value
-            if best is None:
-                raise
-            plan = best[1]
-    if best is None:
-        raise NoRouteError(
-            f"No route that arrives at {utc_text(search.arrive)} was found.",
-            f"{_MOST_PLANS} departures or speeds were tried; the last arrives at "
-            f"{utc_text(plan.best.arrive)}.",
-            "Give the latest arrival with arrive_by, which allows waits.",
-        )
-    return _at_the_jump(search, best, high)
-
-
-def _at_the_jump(search: _Search, best: tuple[float, Plan], late: float) -> tuple[float, Plan]:
-    """Return the last value at which the track of a plan is open, where arrivals jump.
-
-    Each plan takes seconds, so that plans alone come no nearer than some minutes to the jump.
-    """
-    if search.within_limits is None:
-        return best
-    low, high = best[0], late
-    while high - low > _NEAR_JUMP:
-        middle = 0.5 * (low + high)
-        if search.within_limits(best[1], middle) <= search.arrive + _LATE:
-            low = middle
-        else:
-            high = middle
-    if low - best[0] < _EARLY:
-        return best
-    try:
-        plan = search.plan_at(low - _NEAR_JUMP)
-    except NoRouteError:
-        return best
-    later = plan.best.feasible and best[1].best.arrive < plan.best.arrive <= search.arrive + _LATE
-    return (low - _NEAR_JUMP, plan) if later else best
-
-
-def _next_value(search: _Search, plan: Plan, low: float, high: float) -> float:
-    """Return the value at which the track of a plan arrives in time; else the middle."""
-    from scipy.optimize import brentq
-
-    aim = search.arrive - _AIM
-
-    def late(value: float) -> float:
-        return min(search.arrival_on(plan, value) - aim, 1e9)
-
-    try:
-        found = float(brentq(late, low, high, xtol=1e-5 * (high - low), maxiter=30))
-    except ValueError:  # no change of sign on this track
-        return 0.5 * (low + high)
-    inside = low < found < high
-    return found if inside else 0.5 * (low + high)
-
-
 def _over_ground(request: ArrivalRequest, plan: Plan) -> Plan:
     """Return the plan with its route sailed at one speed over ground, arriving in time."""
     route, chart = plan.best, plan.plot_context.chart if plan.plot_context else request.chart
     at_sea = route.legs["leg_kind"] == 0
     passed = float((route.legs["arrive"] - route.legs["depart"])[~at_sea].sum())
-    time = request.arrive - _AIM - route.depart - passed - float(route.track.wait.sum())
+    time = request.arrive - AIM - route.depart - passed - float(route.track.wait.sum())
     speed = float(route.legs["length"][at_sea].sum()) / time
     clearance = required_under_keel_clearance(request.voyage, request.ship)
 
@@ -386,7 +297,7 @@ def _ground_speed(route: Route) -> float:
 
 def _on_time(plan: Plan, request: ArrivalRequest) -> str:
     early = request.arrive - plan.best.arrive
-    if early <= 2.0 * _EARLY:
+    if early <= 2.0 * EARLY:
         return "the ship arrives at the requested time"
     return (
         f"the ship arrives {duration_text(early)} before the requested time; leaving a "

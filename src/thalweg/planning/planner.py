@@ -133,7 +133,7 @@ def plan(
 
         return plan_limited_voyage(voyage, ship, sea, chart, replan, **options)
     if voyage.arrive is not None:
-        return _plan_arrival(voyage, ship, sea, chart, replan, progress)
+        return _plan_arrival(voyage, ship, sea, chart, replan, options)
     ship = with_order(ship, voyage)
     if sea.members:
         return _plan_members(voyage, ship, sea, chart, replan)
@@ -142,11 +142,17 @@ def plan(
     if corridor is not None:
         return _plan_in_usual_water(voyage, ship, sea, chart, corridor, replan)
     assert not isinstance(network, HistoryCorridor)  # planned above
-    choice = NetworkChoice(network, resolution, voyage.layered)
+    return _plan_alone(voyage, ship, sea, chart, options, proof_seconds=proof)
+
+
+def _plan_alone(
+    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, options: dict[str, Any], **settings: Any
+) -> Plan:
+    """Return the plan of a voyage that needs no other plans, with settings of its context."""
+    choice = NetworkChoice(options["network"], options["resolution"], voyage.layered)
     context, ends = voyage_context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
-    context = replace(
-        context, report_progress=progress or context.report_progress, proof_seconds=proof
-    )
+    report = options["progress"] or context.report_progress
+    context = replace(context, report_progress=report, **settings)
     return _plan_with_approaches(context, ends)
 
 
@@ -156,17 +162,22 @@ def _plan_arrival(
     sea: Sea,
     chart: Chart,
     replan: _Replan,
-    progress: Callable[[str], None] | None,
+    options: dict[str, Any],
 ) -> Plan:
-    """Return the plan of a voyage that arrives at a given time; trials of it have no proof."""
+    """Return the plan of a voyage that arrives at a given time."""
     from thalweg.planning.arrival_planner import ArrivalRequest, plan_arrival
 
-    def plan_one(request: Voyage, with_speed: Ship, proven: bool) -> Plan:
-        without: dict[str, float] = {} if proven else {"proof": 0.0}
-        return replan(request, ship=with_speed, sea=sea, chart=chart, **without)
+    corridor = history_corridor(options["network"]) is not None
+
+    def plan_one(request: Voyage, with_speed: Ship, whole: bool) -> Plan:
+        if whole or corridor:
+            return replan(request, ship=with_speed, sea=sea, chart=chart)
+        settings: dict[str, Any] = {"proof_seconds": 0.0, "leaves_later": False}
+        ordered = with_order(with_speed, request)
+        return _plan_alone(request, ordered, sea, chart, options, **settings)
 
     check_request(voyage, ship, with_wind_speed(ship, sea))
-    report = progress or (lambda text: None)
+    report = options["progress"] or (lambda text: None)
     return plan_arrival(ArrivalRequest(voyage, ship, sea, chart, plan_one, report))
 
 

@@ -65,6 +65,7 @@ class PlanningContext:
     proof_seconds : Time for the certificate of a lower bound [s]; None for that of the search.
     approach_times : In the approaches before and after the voyage at sea [s].
     with_approaches : Returns a route at sea with the approaches of its ports, to be shown.
+    leaves_later : Whether a later departure is searched where the ship waits above her limits.
     """
 
     voyage: Voyage
@@ -78,6 +79,7 @@ class PlanningContext:
     proof_seconds: float | None = None
     approach_times: tuple[float, float] = (0.0, 0.0)
     with_approaches: Callable[[Route], Route] = field(default=lambda route: route)
+    leaves_later: bool = True
 
     def show_route(self, route: Route) -> None:
         """Give a route that was found so far to a progress callback with ``show_route``."""

@@ -8,11 +8,12 @@ depth of the edges over it, since a rising tide may open them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
 
+from thalweg.core.errors import NoRouteError
 from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
@@ -31,6 +32,7 @@ from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND, WAVE
 
 MAX_ROUNDS: Final = 8  #: of leaving out edges
 _MOST_PLACES: Final = 6  # of one route
+_MOST_PATHS: Final = 24  # whose edges are left out before a path is refined
 _SAME_WIND: Final = 1e-3  # by which winds that leave too little speed may differ
 _DEPTH, _WAVES, _WIND = (
     codes.REASONS[code] for code in (codes.DEPTH, codes.WAVE_HEIGHT, codes.WIND_SPEED)
@@ -38,15 +40,60 @@ _DEPTH, _WAVES, _WIND = (
 _WITH_PLACES = (_DEPTH, _WAVES, _WIND, SPEED_NOT_PREDICTED)
 
 
-def exceeded_limits_on_route(route: Route) -> tuple[Violation, ...]:
-    """Return where a route exceeds a limit of depth, wave height, wind speed or speed loss.
+def exceeded_limits_on_routes(*routes: Route) -> tuple[Violation, ...]:
+    """Return where routes exceed a limit of depth, wave height, wind speed or speed loss.
 
     Parameters
     ----------
-    route : Scored by the referee.
+    *routes : Scored by the referee.
     """
-    found = [v for v in route.violations if v.reason in _WITH_PLACES]
-    return tuple(found[:_MOST_PLACES])
+    found = []
+    for route in routes:
+        found += [v for v in route.violations if v.reason in _WITH_PLACES][:_MOST_PLACES]
+    return tuple(dict.fromkeys(found))
+
+
+def stricter_limits_help(route: Route) -> bool:
+    """Return whether a search with stricter limits may avoid what a route exceeds.
+
+    Where the speed is predicted is no limit that is made stricter.
+    """
+    return {v.reason for v in route.violations} != {SPEED_NOT_PREDICTED}
+
+
+def without_exceeding_paths(
+    context: PlanningContext,
+    network: Network,
+    places: Sequence[Violation],
+    path_on: Callable[[Network], Route],
+) -> Network:
+    """Return a network whose path exceeds no limit, without the edges of the paths that do.
+
+    A path takes less time than its refinement, and the refinement of a path that exceeds no limit
+    exceeds none either.
+
+    Parameters
+    ----------
+    places : Where the first path and its refinement exceed a limit.
+    path_on : Returns the path of a network as evaluated.
+
+    Returns
+    -------
+    Network : The same one where no edge is left out. Its path may exceed a limit where no edge can
+        be named, and it may have none.
+    """
+    for _ in range(_MOST_PATHS):
+        left = without_exceeding_edges(context, network, places)
+        if left is network:
+            return network
+        network = left
+        try:
+            places = exceeded_limits_on_routes(path_on(network))
+        except NoRouteError:  # the search for the route states it
+            return network
+        if not places:
+            return network
+    return network
 
 
 def without_exceeding_edges(
@@ -62,7 +109,7 @@ def without_exceeding_edges(
     ----------
     context : Request and data of the plan.
     network : The network that was searched.
-    places : As `exceeded_limits_on_route` returns them.
+    places : As `exceeded_limits_on_routes` returns them.
 
     Returns
     -------

@@ -56,11 +56,13 @@ def with_best_waits(
     """
     latest = latest_allowed(context, route, share=math.inf)
     best = with_sheltered_waits(context, route, latest)
-    sheltered, notes = without_waits_above_limits(
-        context, best, paths, last_departure=last_departure
-    )
-    if sheltered is not best:
-        return sheltered, notes
+    notes: list[str] = []
+    if context.leaves_later:
+        sheltered, notes = without_waits_above_limits(
+            context, best, paths, last_departure=last_departure
+        )
+        if sheltered is not best:
+            return sheltered, notes
     fewer = with_fewer_waits(context, best, paths, last_departure=last_departure)
     later, stems = fewer.arrive - best.arrive, stemming_warnings(best)
     if later > _LATER and stems and not stemming_warnings(fewer):

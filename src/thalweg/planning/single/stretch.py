@@ -26,8 +26,9 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.currents_too_strong import leaving_after_current
 from thalweg.planning.single.exceeded_limits import (
     MAX_ROUNDS,
-    exceeded_limits_on_route,
-    without_exceeding_edges,
+    exceeded_limits_on_routes,
+    stricter_limits_help,
+    without_exceeding_paths,
 )
 from thalweg.planning.single.fewer_waits import passing_time_notes, with_best_waits
 from thalweg.planning.single.isochrones import isochrones, ship_for_search
@@ -133,12 +134,13 @@ def plan_stretch(
             context.report_progress("planning round water without data")
             networks[finer] = without_unknown_edges(context, networks[finer], gaps[len(seen) :])
             attempts.appendleft((finer, step))
-        elif step and rounds < MAX_ROUNDS:  # stricter limits did not help
-            places = exceeded_limits_on_route(tried.route)
-            left = without_exceeding_edges(context, networks[finer], places)
+        elif (step or not stricter_limits_help(tried.route)) and rounds < MAX_ROUNDS:
+            path = partial(_path_on_network, context, limits, window, (start, goal), seas)
+            places = exceeded_limits_on_routes(tried.route, path(networks[finer], tried.result))
+            left = without_exceeding_paths(context, networks[finer], places, path)
             if left is not networks[finer]:
                 rounds, networks[finer] = rounds + 1, left
-                attempts.extendleft(((finer, step), (finer, 0)))  # the limits themselves first
+                attempts.extendleft(((finer, step), (finer, 0))[0 if step else 1 :])
     assert stretch is not None  # raised above otherwise
     if not stretch.route.feasible:
         check_times_known(stretch.route, start, goal)
@@ -227,6 +229,17 @@ def _route_on_network(
     """Return the refined route of a network."""
     _, result = _search(context, network, limits, window, ends, LastFrozenSea())
     return refine_track(context, track_from_result(network, result, context.setting), limits)
+
+
+def _path_on_network(
+    context: PlanningContext, limits: Limits, window: tuple[float, float],
+    ends: tuple[Endpoint, Endpoint], seas: LastFrozenSea, network: Network,
+    result: SearchResult | None = None,
+) -> Route:  # fmt: skip
+    """Return the path of a network as evaluated, without refinement."""
+    if result is None:
+        _, result = _search(context, network, limits, window, ends, seas)
+    return context.evaluate(track_from_result(network, result, context.setting))
 
 
 def _late_paths(

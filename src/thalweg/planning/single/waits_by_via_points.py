@@ -44,7 +44,7 @@ def by_later_departure(
     list of StretchResult : The given ones where they wait in no such weather, or where no departure
         that is tried arrives at most 30 % of the voyage later.
     """
-    if len(stretches) == 1 or not context.voyage.wait:
+    if len(stretches) == 1 or not context.voyage.wait or not context.leaves_later:
         return stretches
     route = join_routes([stretch.route for stretch in stretches])
     above = waiting_weather_texts(route, context.ship) if route.feasible else []
