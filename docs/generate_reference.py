@@ -45,6 +45,7 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "model_protocol.SpeedHoldingModel",
         "methods.shallow_water.squat.shallow_water_speed_limit",
         "methods.engine.european_charges.EuropeanCharges",
+        "tables.tabulate.tabulate_dense",
     ),
     "network": (
         "layered.sections_round_land.layered_section",

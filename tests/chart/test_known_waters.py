@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thalweg.chart import Chart
 from thalweg.chart.approaches import PORT_APPROACHES, dense_line
 from thalweg.chart.depth.closed_shoals import ClosedShoals
+from thalweg.chart.depth.global_depth import coarse_depth
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.passages import find_passages
 from thalweg.chart.ports import PORTS
@@ -170,3 +172,68 @@ def test_the_spit_south_of_the_danube_is_a_shoal_area():
     assert spit.contains(np.array([44.82]), np.array([29.61]))[0]
     sulina = approach("Galati").line[-1]
     assert not spit.contains(np.array([sulina[0]]), np.array([sulina[1]]))[0]
+
+
+ROCKS_AND_WORKS = {
+    "Bull Rock": (51.5923, -10.3017),
+    "Belle Rock": (48.4936, -122.7525),
+    "South Rock": (54.3990, -5.4170),
+    "Nab Tower": (50.6680, -0.9530),
+    "No Man's Land Fort": (50.7395, -1.0948),
+    "Chesapeake trestle, north": (37.0523, -76.0480),
+    "Chesapeake trestle, south": (36.9400, -76.1230),
+}
+
+
+@pytest.mark.parametrize("name", ROCKS_AND_WORKS)
+def test_rocks_and_trestles_are_land(name):
+    """Routes passed 0.01 to 0.3 nm off them, and through the trestle."""
+    place = ROCKS_AND_WORKS[name]
+    assert not Chart.gshhg("i").is_navigable(*place)
+
+
+def test_ships_pass_over_the_tunnel_of_the_chesapeake_channel():
+    chart = Chart.gshhg("i")
+    (channel,) = find_passages(["Chesapeake Channel (Bridge-Tunnel)"])
+    lat, lon, _ = densify(*np.array(channel.line).T, 200.0)
+    assert np.all(chart.is_navigable(lat, lon))
+    assert np.min(distance(lat, lon, 37.0305, -76.0855)) < 200.0
+
+
+def test_the_old_bahama_channel_is_off_the_bank():
+    """Its line led over the Great Bahama Bank."""
+    (channel,) = find_passages(["Old Bahama Channel"])
+    lat, lon, _ = densify(*np.array(channel.line).T, 1000.0)
+    assert np.nanmin(coarse_depth(lat, lon)) > 50.0
+
+
+def test_the_traffic_route_of_uraga_is_west_of_daini_kaiho():
+    (uraga,) = find_passages(["Uraga (Tokyo Bay)"])
+    lat, lon, _ = densify(*np.array(uraga.line).T, 200.0)
+    near = int(np.argmin(distance(lat, lon, 35.3127, 139.7413)))
+    assert lon[near] < 139.7313
+
+
+@pytest.mark.parametrize(("area", "inside", "outside"), [
+    ("Great Bahama Bank", (21.80, -75.70), (21.60, -75.76)),
+    ("Dangerous Ground", (10.10, 117.35), (10.30, 118.00)),
+    ("Rifleman Bank", (7.55, 111.56), (7.40, 111.30)),
+    ("Burford Bank", (53.32, -6.02), (53.345, -6.02)),
+    ("San Francisco Bar", (37.72, -122.58), (37.77, -122.60)),
+    ("Ryde Sand", (50.73, -1.12), (50.7448, -1.0840)),
+])  # fmt: skip
+def test_banks_are_named_areas_and_the_channels_beside_them_are_not(area, inside, outside):
+    (found,) = (one for one in SHOAL_AREAS if one.name.startswith(area))
+    lat, lon = np.array([inside, outside]).T
+    assert found.contains(lat, lon).tolist() == [True, False]
+
+
+@pytest.mark.parametrize(("port", "place", "within_nm"), [
+    ("JPTYO", (35.3000, 139.7200), 0.3),  # the traffic route, west of Daini Kaiho
+    ("RUVVO", (43.0430, 131.9600), 0.3),  # north of Skryplev
+    ("GBSOU", (50.7448, -1.0835), 0.2),  # between the forts
+    ("USSFO", (37.7550, -122.6900), 0.2),  # the pilot buoy
+    ("ARBUE", (-35.1600, -56.3000), 0.2),  # west of English Bank
+])  # fmt: skip
+def test_approaches_follow_their_channels(port, place, within_nm):
+    assert least_miles(approach(port).line, place) < within_nm

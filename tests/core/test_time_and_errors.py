@@ -15,7 +15,13 @@ import thalweg
 from thalweg.chart.passages import PASSAGES
 from thalweg.cli.exit_codes import print_error
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.errors import InputError, NoRouteError, close_matches, unknown_name_error
+from thalweg.core.errors import (
+    InputError,
+    NoRouteError,
+    close_matches,
+    reasons_text,
+    unknown_name_error,
+)
 from thalweg.core.time import format_time, parse_time, to_datetime64
 
 
@@ -165,3 +171,9 @@ def test_times_beyond_the_nanoseconds_are_not_wrapped():
 def test_a_name_without_its_unit_means_the_one_with_it():
     assert close_matches("min_ukc", ["min_wait", "min_uke", "Min_UKC_m"])[0] == "Min_UKC_m"
     assert close_matches("speed", ["speeds", "sped", "speed_kn"])[0] == "speed_kn"
+
+
+def test_reasons_in_words_name_what_closes_the_water():
+    refused = {"no-go zone": 1207, "land": 12, "depth": 0}
+    assert reasons_text(refused) == "no-go zone or closed shoal area: 1,207, land: 12"
+    assert NoRouteError("No route.", reasons=refused).reasons_text == reasons_text(refused)

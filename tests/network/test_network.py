@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -22,6 +24,9 @@ from thalweg.network.conformal_projection import (
     mercator_projection,
 )
 from thalweg.network.shortest_paths import shortest_path_tree
+from thalweg.planning.network_selection.network_builder import build_network
+from thalweg.planning.request.network_choice import NetworkChoice
+from thalweg.sea import Sea
 
 OPEN = Chart.open_water()
 
@@ -194,3 +199,10 @@ def test_frames_invert_and_are_conformal(lat, lon, turned):
         quarter = np.angle(np.exp(1j * (along[1] - up[1])))
         assert float(quarter) == pytest.approx(np.pi / 2, abs=1e-3)
         assert float(up[0]) == pytest.approx(float(frame.metres(y)) * step, rel=6e-3)
+
+
+def test_a_builder_of_ones_own_returns_a_network():
+    ends: Any = [SimpleNamespace(lat=0.0, lon=0.0), SimpleNamespace(lat=0.0, lon=1.0)]
+    choice = NetworkChoice(lambda *given, **more: None)
+    with pytest.raises(InputError, match="The network builder returns None"):
+        build_network(choice, Chart.open_water(), Sea.calm(), ends, period=(0.0, 1.0))

@@ -31,8 +31,8 @@ def test_a_way_that_turns_back_is_stated_with_the_place():
     assert note.startswith("Turns back by 1") and "56.2800N 5.8000W" in note
     assert count_of_dangers([note]) == 1  # no summary leaves it out
     # the first example of the README said that its way may be longer than need be
-    assert "there the channel of a port meets the open sea" in note
-    assert "Where the ship can use a nearer channel, plan from or to a position in it" in note
+    assert "the sea end of the channel of a port is there" in note
+    assert "plan from or to a position in that channel" in note
 
 
 def test_turns_elsewhere_and_ways_onwards_have_no_note():

@@ -113,7 +113,7 @@ def test_an_impossible_arrival_states_what_is_possible() -> None:
     with pytest.raises(NoRouteError) as caught:
         planned(sea, depart=DEPART, arrive=DEPART + 400.0 * HOUR)
     assert "at every speed considered" in caught.value.asked
-    assert "leave out the departure" in caught.value.remedy
+    assert "Leave out the departure" in caught.value.remedy
 
 
 @pytest.mark.slow

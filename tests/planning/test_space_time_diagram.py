@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -178,3 +180,18 @@ def test_a_voyage_of_a_given_arrival_has_no_window_of_departure() -> None:
     assert _window_limits(arriving) == []
     departing = Voyage(start=(0.0, 0.0), goal=(0.0, 1.0), depart=3600.0, arrive_by=9e4)
     assert _window_limits(departing) == [3600.0, 3600.0, 9e4]
+
+
+def test_the_diagram_of_a_latest_departure_has_no_window(waiting) -> None:
+    """The plan stopped with "None is not a time" after it had been found."""
+    given = Voyage(start=TRACK[0], goal=TRACK[1], arrive=LOW + 86400.0)
+    figure = draw_space_time_diagram(replace(waiting, voyage=given))
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert "ship" in labels and "departure window" not in labels
+
+
+def test_a_latest_arrival_beyond_the_diagram_is_not_in_its_legend(waiting) -> None:
+    far = Voyage(start=TRACK[0], goal=TRACK[1], depart=LOW, arrive_by=LOW + 30 * 86400.0)
+    figure = draw_space_time_diagram(replace(waiting, voyage=far))
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert "arrive by" not in labels

@@ -1,6 +1,7 @@
 """Warnings of ships that stem a current, and the departures of a window."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.waiting_report import (
     stemming_warnings,
     stream_warnings,
+    unknown_current_warnings,
     window_notes,
 )
+from thalweg.route import Track
 
 
 def with_current_of(eastward_kn):
@@ -66,3 +69,26 @@ def test_departures_of_a_window_are_listed():
         and note.count(";") == 6
     )
     assert window_notes(departures[:1], (0.0, 0.0)) == window_notes([], (0.0, 0.0)) == []
+
+
+def test_a_wait_for_an_unknown_current_is_no_wait_for_a_tide():
+    begin = 1767225600.0
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: np.where(
+                t < begin + 7200.0, np.nan, 0.0
+            ),
+            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
+        }
+    )
+    track = Track([0.0, 0.0, 0.0], [-5.0, -4.98, -4.9], begin, wait=[0.0, 9000.0, 0.0])
+    route = evaluate(track, ship=Ship.simple(speed_kn=10.0), sea=sea, strict=False)
+    times = np.linspace(begin + 600.0, begin + 9600.0, 31)
+    current = np.where(times < begin + 7200.0, np.nan, 0.0)
+    samples = {"leg": np.ones(31, int), "time": times, "eastward_sea_water_velocity": current}
+    (note,) = unknown_current_warnings(replace(route, wait_samples=samples))
+    assert note.startswith("Waits at sea at 0.0000N 4.9800W since the data have no current there")
+    assert "from 2026-01-01 00:10 UTC to 2026-01-01 01:55 UTC" in note
+    known = {**samples, "eastward_sea_water_velocity": np.zeros(31)}
+    assert unknown_current_warnings(replace(route, wait_samples=known)) == []
+    assert unknown_current_warnings(replace(route, wait_samples={})) == []

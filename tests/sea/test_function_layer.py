@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thalweg.core.errors import InputError, OutsidePeriodError
+from thalweg.core.errors import DatasetError, InputError, OutsidePeriodError
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 
@@ -308,3 +308,13 @@ def test_frozen_times_begin_and_end_at_the_window_to_the_bit(step) -> None:
     times = Sea.layered(sea, Sea.calm()).times(start, end)
     assert times[0] <= start and times[-1] >= end
     assert np.diff(times).min() > 1e-3
+
+
+def test_a_negative_wave_height_is_refused_where_it_is_read():
+    """It made ships faster than in calm water."""
+    name = "sea_surface_wave_significant_height"
+    sea = Sea.from_functions({name: lambda t, y, x: -3.0 + 0.0 * y})
+    with pytest.raises(DatasetError, match="wave_significant_height returns -3"):
+        sea.sample([name], 0.0, 50.0, 0.0)
+    unknown = Sea.from_functions({name: lambda t, y, x: np.nan + 0.0 * y})
+    assert np.isnan(unknown.sample([name], 0.0, 50.0, 0.0)[name]).all()

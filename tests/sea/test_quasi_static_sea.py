@@ -15,7 +15,7 @@ HEIGHT = "sea_surface_wave_significant_height"
 def _sea(period=None):
     """Waves whose height is the hours since the start."""
     functions = {
-        HEIGHT: lambda time, lat, lon: (time - START) / HOUR + 0.0 * lat,
+        HEIGHT: lambda time, lat, lon: np.maximum(time - START, 0.0) / HOUR + 0.0 * lat,
         "sea_surface_wave_to_direction": lambda time, lat, lon: 0.0 * lat,
         "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda t, y, x: 8.0 + 0 * y,
     }

@@ -150,3 +150,9 @@ def test_fingerprints_distinguish_functions_and_not_their_names():
 def test_no_speed_can_be_ordered_from_a_function():
     with pytest.raises(InputError, match="no speed can be ordered"):
         Ship.from_speed_function(lambda c: 4.0).with_speeds([3.0])
+
+
+def test_a_function_that_returns_knots_is_refused():
+    """14 kn given as m/s sailed 420 nm at 27 kn, and 120 as 233 kn."""
+    with pytest.raises(InputError, match="which is 233 kn"):
+        Ship.from_speed_function(lambda c: 120.0 - 0.1 * c.wave_height)

@@ -277,7 +277,7 @@ def test_a_study_without_any_route_is_summarised_with_the_reason(folder, tmp_pat
     study = base(folder, axes={"depart": ["2031-01-01T00:00Z", "2031-01-02T00:00Z"]})
     path = folder / "late.yaml"
     path.write_text(yaml.safe_dump(study.to_dict()))
-    assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 4
+    assert main(["study", "run", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 3
     assert "2 of them without a route\n1 of these: " in capsys.readouterr().out
     assert main(["study", "summary", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
@@ -497,3 +497,20 @@ def test_a_misspelt_port_is_refused_before_the_study_starts(tmp_path):
     with pytest.raises(InputError, match="no port named 'Dovre'"):
         run_study(study, tmp_path / "out")
     assert not (tmp_path / "out" / "study.json").exists()
+
+
+def test_an_ensemble_without_a_member_is_no_single_forecast(folder, tmp_path, capsys):
+    """The row had the figures of one member that it did not name."""
+    with xr.open_dataset(folder / "year.nc") as year:
+        short = year.isel(time=slice(0, 400)).load()
+    xr.concat([short, short], "number").to_netcdf(tmp_path / "members.nc")
+    voyage = {"start": [0.0, 0.0], "goal": [0.0, 3.0], "speed_kn": 10.0}
+    entries = {
+        "voyage": {**voyage, "depart": "2026-03-01T00:00Z"},
+        "sea": "members.nc",
+        "ship": {"name": "s", "speeds_kn": [10.0], "hull": {"draught_m": 4.0}},
+        "coast": "none",
+    }
+    (tmp_path / "e.yaml").write_text(yaml.safe_dump(entries))
+    assert main(["study", "run", str(tmp_path / "e.yaml"), "--out", str(tmp_path / "out")]) == 2
+    assert "2 members, and the study names none" in capsys.readouterr().out

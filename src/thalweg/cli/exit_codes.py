@@ -33,7 +33,6 @@ def print_error(error: ThalwegError, *, as_json: bool) -> int:
     lines = [f"error: {error.asked}"]
     lines += [text for text in (error.possible, error.remedy) if text]
     if isinstance(error, NoRouteError) and error.reasons:
-        counts = ", ".join(f"{reason}: {count}" for reason, count in error.reasons.items())
-        lines.append(f"Legs rejected: {counts}.")
+        lines.append(f"Legs rejected: {error.reasons_text}.")
     print("\n  ".join(lines), file=sys.stderr)
     return exit_code(error)

@@ -11,7 +11,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
+from thalweg.cli.exit_codes import BAD_INPUT, NO_COVERAGE, NO_ROUTE, SUCCESS
 from thalweg.cli.progress import ProgressMessages
 from thalweg.core.errors import InputError
 
@@ -82,8 +82,10 @@ def _run(arguments: argparse.Namespace) -> int:
     report: ProgressMessages = arguments.progress
     report(f"planning {study.size} voyages")
     reasons: Counter[str] = Counter()
+    kinds: Counter[str] = Counter()
 
     def progress(state: StudyProgress) -> None:
+        kinds.update(str(row["refusal"]) for row in state.rows if not has_route(row))
         reasons.update(
             str(row["reason"] or row.get("first_violation"))
             for row in state.rows
@@ -104,7 +106,9 @@ def _run(arguments: argparse.Namespace) -> int:
     )
     for reason, count in reasons.most_common(1):
         print(f"{count} of these: {reason}")
-    return NO_ROUTE if state.new and state.refused == state.new else SUCCESS
+    if not state.new or state.refused < state.new:
+        return SUCCESS
+    return _EXIT_CODES.get(next(iter(kinds)), NO_ROUTE) if len(kinds) == 1 else NO_ROUTE
 
 
 def _refuse_ready_name(given: str) -> None:
@@ -142,6 +146,14 @@ def _words(state: StudyProgress) -> str:
     )
 
 
+#: Where all voyages are refused for the same kind of error.
+_EXIT_CODES: Final = {
+    "InputError": BAD_INPUT,
+    **dict.fromkeys(
+        ("CoverageError", "OutsideAreaError", "OutsidePeriodError", "MissingVariableError"),
+        NO_COVERAGE,
+    ),
+}
 _SHOWN_VOYAGES: Final = 10
 #: Figures on the terminal, where they are known and not all zero; the files have all of them.
 _SHOWN_FIGURES: Final = (

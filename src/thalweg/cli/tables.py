@@ -103,8 +103,10 @@ def _print_details(plan: Plan) -> None:
         print_front(console, plan)
     print_passage_alternatives(console, plan)
     print_notes(console, plan.notes)
-    refused = ", ".join(f"{reason}: {count}" for reason, count in plan.rejections.items())
-    console.print(f"Legs rejected: {refused or 'none'}.", soft_wrap=True)
+    from thalweg.core.errors import reasons_text
+
+    refused = reasons_text(plan.rejections) or "none"
+    console.print(f"Legs rejected: {refused}.", soft_wrap=True)
     for network in plan.provenance["networks"]:
         facts = ", ".join(f"{name} {value}" for name, value in network.items())
         console.print(f"Network: {escape(facts)}.", soft_wrap=True)

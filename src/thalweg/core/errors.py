@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -91,6 +91,15 @@ class ModelRangeError(ThalwegError):
     """A model was evaluated outside its range of validity."""
 
 
+#: Reasons whose names say less than they count.
+_IN_WORDS: Final = {"no-go zone": "no-go zone or closed shoal area"}
+
+
+def reasons_text(reasons: Mapping[str, int]) -> str:
+    """Return reasons for which legs were refused and their counts: ``land: 12, depth: 3``."""
+    return ", ".join(f"{_IN_WORDS.get(name, name)}: {n:,}" for name, n in reasons.items() if n)
+
+
 class NoRouteError(ThalwegError):
     """No route exists on the network within the limits.
 
@@ -117,6 +126,11 @@ class NoRouteError(ThalwegError):
         self.reasons = dict(reasons or {})
         self.nearest = nearest
         super().__init__(asked, possible, remedy, reasons=self.reasons, nearest=nearest, **details)
+
+    @property
+    def reasons_text(self) -> str:
+        """The reasons and their counts, such as ``land: 12, depth: 3``."""
+        return reasons_text(self.reasons)
 
 
 class NoPathError(NoRouteError):

@@ -31,6 +31,7 @@ from thalweg.sea import Sea
 from thalweg.ship import Ship
 
 _NEAR_SPEED = 0.005  # [m/s]: two trials nearer to a jump of the arrivals than that are enough
+_TRIED_BEFORE = 13.0 * HOUR  # a tide: departures before the first guess, where that has no route
 _LONGEST_RATIO = 10.0  # of the time before the arrival that is searched, over the passage
 _LEAST_SPEED_RATIO = 0.5  # of the slowest setting of the ship file
 
@@ -150,7 +151,10 @@ def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
         return request.sail(plan, request.at_speed(speed))
 
     fastest = plan_at(top)
-    _check_possible(request, fastest, (low, top), arrival_on(fastest, low))
+    slow_arrival = arrival_on(fastest, low)
+    if slow_arrival < request.arrive - EARLY:  # its waits may be others than at the highest speed
+        slow_arrival = plan_at(low).best.arrive
+    _check_possible(request, fastest, (low, top), slow_arrival)
     # with the sign changed, so that the arrival grows with the value
     search = ArrivalSearch(
         lambda value: plan_at(-value),
@@ -211,8 +215,8 @@ def _check_possible(
         raise NoRouteError(
             f"The ship arrives before {utc_text(request.arrive)} at every speed considered.",
             f"At {low / KNOT:.1f} kn, the lowest of them, it arrives at {utc_text(slow_arrival)}.",
-            f"Depart about {duration_text(request.arrive - slow_arrival)} later, leave out the "
-            "departure to get the latest one, or let it wait with arrive_by.",
+            "Leave out the departure to get the latest one, depart later, or let it wait with "
+            "arrive_by.",
         )
 
 
@@ -231,8 +235,7 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
     first = period_of_data(ship, request.sea)[0]
     ends = [resolve_endpoint(p, request.chart, "place") for p in (voyage.start, voyage.goal)]
     away = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon)) / float(speed)
-    guess = max(request.arrive - away, first)
-    plan = plan_at(guess)
+    guess, plan = _first_departure(plan_at, max(request.arrive - away, first), first)
     if guess == first and plan.best.arrive > request.arrive + LATE:
         raise _data_begin_too_late(request, first, plan.best.arrive)
     earliest = max(first, request.arrive - _LONGEST_RATIO * (away + plan.best.time_h * HOUR))
@@ -251,6 +254,23 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
         f"({speed / KNOT:.1f} kn ordered): {_on_time(found, request)}."
     )
     return found, note
+
+
+def _first_departure(
+    plan_at: Callable[[float], Plan], guess: float, first: float
+) -> tuple[float, Plan]:
+    """Return the first departure before a guess that has a route, and its plan.
+
+    A ship that may not wait finds a bar closed at many departures.
+    """
+    depart = guess
+    while True:
+        try:
+            return depart, plan_at(depart)
+        except NoRouteError:
+            depart -= HOUR
+            if depart < max(first, guess - _TRIED_BEFORE):
+                raise
 
 
 def _data_begin_too_late(request: ArrivalRequest, first: float, arrive: float) -> NoRouteError:

@@ -49,12 +49,11 @@ def stated_time_notes(contents: ParsedTrack, route: Route) -> list[str]:
     texts = []
     if of_legs.any():
         too_slow = of_legs & (taken > wanted)  # the ship cannot keep these; in others she is early
-        k = int(
-            np.argmax(np.where(too_slow if too_slow.any() else of_legs, abs(taken - wanted), 0))
-        )
+        stated_legs = too_slow if too_slow.any() else of_legs
+        k = int(np.argmax(np.where(stated_legs, abs(taken - wanted), 0)))
         miles = _lengths(route, len(stated))[known[k] + 1 : known[k + 1] + 1].sum()
         text = _leg_text(known[k] + 1, known[k + 1], float(miles), wanted[k], taken[k])
-        more = int(too_slow.sum()) - 1
+        more = int(stated_legs.sum()) - 1
         text += f", and {more} more {'leg' if more == 1 else 'legs'} as well" if more > 0 else ""
         texts.append(text + (" (waits count)" if np.any(route.track.wait > 0.0) else ""))
     if of_waypoints.any():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -78,6 +79,25 @@ def check_plausible(name: str, value: NDArray[Any], variables: list[str], source
         value=worst,
         file=source,
     )
+
+
+def check_not_negative(values: Mapping[str, NDArray[Any]]) -> None:
+    """Raise `DatasetError` if functions return negative heights, periods or speeds.
+
+    Parameters
+    ----------
+    values : What the functions return [SI], by canonical name.
+    """
+    for name in NEVER_NEGATIVE.intersection(values):
+        least = float(np.fmin.reduce(np.ravel(values[name]), initial=np.inf))
+        if least < -NEGATIVE_TOLERANCE:
+            raise DatasetError(
+                f"The function of {name} returns {least:g}.",
+                "It is never negative; NaN stands for a value that is not known.",
+                "Correct the function.",
+                variable=name,
+                value=least,
+            )
 
 
 def without_packing_error(name: str, value: NDArray[Any]) -> NDArray[Any]:

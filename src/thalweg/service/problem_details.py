@@ -286,7 +286,7 @@ def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> Service
     possible = "The form of requests is in /openapi.json, with examples."
     remedy = f"Correct {name}." if place else "Correct the request."
     if first["type"] == "missing":
-        remedy = f"Add {name}."
+        remedy = f"Add {name if place else 'it'}."
         entry = None if model is None or len(place) != 1 else model.model_fields.get(place[0])
         if entry is not None and entry.description:
             possible = f"It is needed: {entry.description}."

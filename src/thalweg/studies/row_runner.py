@@ -12,7 +12,7 @@ import numpy as np
 
 import thalweg
 from thalweg.chart import Chart
-from thalweg.core.errors import CoverageError, InputError, ThalwegError
+from thalweg.core.errors import CoverageError, InputError, NoRouteError, ThalwegError
 from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
@@ -96,8 +96,7 @@ def _run_group(rows: Sequence[StudyRow], folder: str) -> list[dict[str, Any]]:
 def _plain(found: dict[str, Any] | Exception) -> dict[str, Any]:
     """Return figures as they are, and an error as a refusal."""
     if isinstance(found, ThalwegError):
-        counts = getattr(found, "reasons", None) or {}
-        refused = ", ".join(f"{name} ({count:,})" for name, count in sorted(counts.items()))
+        refused = found.reasons_text if isinstance(found, NoRouteError) else ""
         reason = f"{found} Legs refused: {refused}." if refused else str(found)
         return {"refusal": type(found).__name__, "reason": reason}
     if isinstance(found, Exception):
@@ -118,6 +117,14 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the key figures of the route of a request."""
     ship = ship_of_request(request, str(folder))
     sea = _sea(request, folder)
+    if sea.members:
+        raise InputError(
+            f"The sea is a forecast of {sea.members} members, and the study names none.",
+            "A row of a study has the figures of one route in one forecast.",
+            "Add the axis member, such as axes: {member: [0, 1, 2]}, or one member; thalweg plan "
+            "shows the mean of an ensemble.",
+            field="member",
+        )
     chart = _chart_of(request, str(folder))
     voyage = request["voyage"]
     if "track" in request:

@@ -49,6 +49,10 @@ CLOSED_NARROWS: Final[dict[str, tuple[tuple[float, float], ...]]] = {
     "Afsluitdijk": ((52.9244, 5.0188), (53.0906, 5.3712)),
     "King Fahd Causeway": ((26.2102, 50.1790), (26.1398, 50.4710)),
     "Johor Causeway": ((1.4656, 103.7674), (1.4391, 103.7722)),
+    # trestles of the Chesapeake Bay Bridge-Tunnel, between its tunnels and its North Channel bridge
+    "Chesapeake trestle north": ((37.0365, -76.0810), (37.0680, -76.0150)),
+    "Chesapeake trestle middle": ((36.9745, -76.1065), (37.0245, -76.0895)),
+    "Chesapeake trestle south": ((36.9100, -76.1340), (36.9610, -76.1150)),
 }
 _DAM_HALF_WIDTH: Final = 0.0005  # [deg]
 

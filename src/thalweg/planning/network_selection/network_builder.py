@@ -7,8 +7,9 @@ from functools import cached_property, partial
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.core.errors import NoRouteError
+from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance, line_length
+from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import (
     Network,
@@ -44,6 +45,14 @@ def build_network(
     places = (ends[0].lat, ends[0].lon), (ends[1].lat, ends[1].lon)
     if callable(choice.network):
         network = choice.network(chart, *places, spacing=choice.spacing)
+        if not isinstance(network, Network):
+            raise InputError(
+                f"The network builder returns {shortened_repr(network)}.",
+                "It is called with (chart, (lat, lon), (lat, lon), spacing=...), and returns a "
+                "thalweg.network.Network with its start and goal.",
+                "Return a network, such as one of thalweg.network.lattice or fixed_route.",
+                field="network",
+            )
         check_network(network)
         return network
     model = sea.mesh() if choice.network in ("auto", "mesh") else None

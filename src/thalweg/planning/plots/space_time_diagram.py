@@ -155,7 +155,7 @@ def _draw(
     miles = closures.distance / NAUTICAL_MILE
     handles = _hatch_closures(axes, closures, hours, miles)
     handles += _draw_ship_track(axes, route)
-    handles += _draw_time_windows(axes, route, voyage, float(miles[-1]))
+    handles += _draw_time_windows(axes, route, voyage, float(miles[-1]), float(hours[-1]))
     axes.set_xlim(hours[0], hours[-1])
     axes.set_ylim(0.0, miles[-1])
     axes.set_xlabel(f"hours since {format_time(route.depart)}", fontsize=9)
@@ -210,9 +210,11 @@ def _draw_ship_track(axes: Any, route: Route) -> list[Any]:
     return [*handles, line]
 
 
-def _draw_time_windows(axes: Any, route: Route, voyage: Voyage | None, end: float) -> list[Any]:
-    """Draw the departure window and the latest arrival."""
-    if voyage is None:
+def _draw_time_windows(
+    axes: Any, route: Route, voyage: Voyage | None, end: float, last_hour: float
+) -> list[Any]:
+    """Draw the departure window, and the latest arrival where it is before the last hour."""
+    if voyage is None or voyage.departure_is_open:
         return []
     handles = []
     first, last = voyage.earliest_departure, voyage.latest_departure
@@ -224,7 +226,8 @@ def _draw_time_windows(axes: Any, route: Route, voyage: Voyage | None, end: floa
         )  # fmt: skip
     if voyage.arrive_by is not None:
         hour = (parse_time(voyage.arrive_by) - route.depart) / HOUR
-        handles += axes.plot(
-            [hour, hour], [0.0, end], color=_INK, lw=1.2, ls="--", zorder=3, label="arrive by"
-        )
+        if hour <= last_hour:
+            handles += axes.plot(
+                [hour, hour], [0.0, end], color=_INK, lw=1.2, ls="--", zorder=3, label="arrive by"
+            )
     return handles

@@ -194,9 +194,9 @@ def turn_back_notes(lat: FloatArray, lon: FloatArray, ends: Iterable[int]) -> li
     turns = np.abs(course_changes(lat, lon))
     return [
         f"{TURNS_BACK} by {math.degrees(turns[at - 1]):.0f} degrees at "
-        f"{format_position(lat[at], lon[at])}: there the channel of a port meets the open sea, on "
-        "another side than the rest of the way. Where the ship can use a nearer channel, plan from "
-        "or to a position in it, and the way is shorter."
+        f"{format_position(lat[at], lon[at])}: the sea end of the channel of a port is there, on "
+        "the side away from the voyage. If the chart has a channel nearer to the voyage, plan from "
+        "or to a position in that channel."
         for at in ends
         if 1 <= at <= len(turns) and turns[at - 1] > _SHARP
     ]

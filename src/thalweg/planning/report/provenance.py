@@ -27,6 +27,7 @@ from thalweg.planning.report.waiting_report import (
     heavy_weather_warnings,
     hours_and_slowest,
     stream_warnings,
+    unknown_current_warnings,
     waiting_notes,
     waiting_weather_warnings,
 )
@@ -76,7 +77,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
         notes += unread_weather_notes(route, context.sea, context.ship)
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
-    notes += waiting_weather_warnings(route, context.ship)
+    notes += unknown_current_warnings(route) + waiting_weather_warnings(route, context.ship)
     notes += heavy_weather_warnings(route, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
     notes += over_speed_notes(context.chart, route) + far_area_notes(context.chart, route)

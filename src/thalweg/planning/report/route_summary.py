@@ -138,7 +138,7 @@ def canals_passed(route: Route, chart: Chart | None) -> list[Canal]:
 def fuel_text(route: Route) -> str:
     """Return the fuel, and how much of it is burnt in emission control areas."""
     if route.fuel_t is None:
-        return "not known: the ship file has no fuel"
+        return f"not known: {_why_unknown(route, 'the ship file has no fuel')}"
     inside = route.fuel_eca_t
     areas = f", of it {amount_text(inside, 't')} in emission control areas" if inside else ""
     return f"{amount_text(route.fuel_t, 't')}{areas}"
@@ -151,7 +151,7 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     basis = f" (by {basis})" if basis else ""
     if route.cost is None:
         paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
-        return f"not known: {_why_unknown(route.prices)}{paid}"
+        return f"not known: {_why_unknown(route, 'no price of fuel or time')}{paid}"
     word = "of it " if route.currency == "USD" else "without "
     paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
     prices = prices_text(route.prices)
@@ -163,12 +163,14 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     return f"{amount}{paid}" + (f"; {prices}" if prices else "")
 
 
-def _why_unknown(prices: Mapping[str, Any]) -> str:
-    """Return why the cost of a route is not known."""
-    charges, fuel = (prices.get(key) or {} for key in ("european_charges", "fuel_per_t"))
+def _why_unknown(route: Route, usual: str) -> str:
+    """Return why the fuel or the cost of a route is not known."""
+    if not math.isfinite(route.time_h):
+        return "the route cannot be sailed to its end"
+    charges, fuel = (route.prices.get(key) or {} for key in ("european_charges", "fuel_per_t"))
     if fuel.get("value") is not None and charges.get("voyage_share") and charges["euro_price"]:
         return "the FuelEU penalty of this fuel is not known; leave out the price of the euro"
-    return "no price of fuel or time"
+    return usual
 
 
 def _parts_text(route: Route) -> str:

@@ -13,7 +13,12 @@ from thalweg.core.time import duration_text, utc_text
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.route import Route
-from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
+from thalweg.sea.standard_names import (
+    EASTWARD_CURRENT,
+    EASTWARD_WIND,
+    NORTHWARD_WIND,
+    WAVE_HEIGHT,
+)
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
@@ -43,6 +48,24 @@ def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
     The first waypoint is left out: there the ship is at her berth.
     """
     return [f"{WAITS} {text}: {_ADVICE}" for text in waiting_weather_texts(route, ship)]
+
+
+def unknown_current_warnings(route: Route) -> list[str]:
+    """Return a warning where a ship waits at sea because the current is not known there."""
+    current = route.wait_samples.get(EASTWARD_CURRENT)
+    if current is None:
+        return []
+    notes = []
+    for place, _, lying in _waits(route):
+        unknown = lying & np.isnan(current)
+        if unknown.any():
+            times = route.wait_samples["time"][unknown]
+            notes.append(
+                f"{WAITS} at {format_position(*place)} since the data have no current there from "
+                f"{utc_text(float(times[0]))} to {utc_text(float(times[-1]))}: it is no wait for "
+                "a tide. Add data, or fill the gap (--fill currents=...)."
+            )
+    return notes
 
 
 def heavy_weather_warnings(route: Route, ship: Ship) -> list[str]:

@@ -18,6 +18,7 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.layer import Samples, nan_pairs
+from thalweg.sea.plausible_values import check_not_negative
 from thalweg.sea.triangle_mesh import Mesh
 
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
@@ -220,6 +221,7 @@ def layer_of_functions(
         for name in names:
             if name not in done:
                 done.update(makers[name](time, lat, lon))
+        check_not_negative(done)
         return {name: done[name] for name in names}
 
     return FormulaLayer(frozenset(makers), evaluate, "formula", box, span, step)

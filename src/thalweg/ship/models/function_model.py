@@ -6,13 +6,14 @@ import hashlib
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
+from thalweg.core.units import KNOT
 from thalweg.ship.condition_variables import (
     AXIS_OF_CONDITION,
     BED_DEPTH,
@@ -29,6 +30,8 @@ from thalweg.ship.tables.tabulate import (
     random_conditions,
     tabulate_dense,
 )
+
+_GREATEST_SPEED: Final = 80.0 * KNOT  # [m/s]: more is knots
 
 SpeedFunction = Callable[[Conditions], ArrayLike]
 
@@ -319,6 +322,12 @@ def _greatest_speed(function: SpeedFunction, reads: frozenset[str], part: TableP
             "The speed function never gives a positive speed.",
             "It returns speed through water [m/s].",
             "Check its unit and its sign.",
+        )
+    if top > _GREATEST_SPEED:
+        raise InputError(
+            f"The speed function returns {top:g} m/s, which is {top / KNOT:.0f} kn.",
+            f"Speeds through water are in metres a second, up to {_GREATEST_SPEED / KNOT:.0f} kn.",
+            "Multiply knots by 0.514444.",
         )
     return top
 

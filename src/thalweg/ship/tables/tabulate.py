@@ -86,9 +86,20 @@ def tabulate_dense(
     ----------
     function : callable
         Takes conditions by name, arrays that broadcast; returns shape ``(*shape, settings)``.
-    axes : Where to begin; at least one.
-    tolerance : Relative error that 99 % of random conditions must meet; see `TableError`.
-    largest : Bytes the table may take. Refinement stops there; the error says what was reached.
+    axes : sequence of AxisRange
+        Where to begin, at least one; the ranges that ships meet are in ``DEFAULT_AXES`` of this
+        module, by the name of the condition.
+    tolerance : float
+        Relative error that 99 % of random conditions must meet; see `TableError`.
+    largest : int, optional
+        Bytes the table may take. Refinement stops there; the error states what was reached.
+
+    Returns
+    -------
+    part : TablePart
+        The table.
+    error : TableError
+        Its error against the function, at random conditions.
     """
     points = random_conditions(axes, _SAMPLES, 0)
     truth = function(points)
