@@ -20,6 +20,7 @@ from thalweg.core.errors import (
     NoRouteError,
     close_matches,
     reasons_text,
+    refuse_other_file,
     unknown_name_error,
 )
 from thalweg.core.time import format_time, parse_time, to_datetime64
@@ -177,3 +178,21 @@ def test_reasons_in_words_name_what_closes_the_water():
     refused = {"no-go zone": 1207, "land": 12, "depth": 0}
     assert reasons_text(refused) == "no-go zone or closed shoal area: 1,207, land: 12"
     assert NoRouteError("No route.", reasons=refused).reasons_text == reasons_text(refused)
+
+
+@pytest.mark.parametrize(("entries", "wanted", "words"), [
+    (("load", "unload", "volume_m3", "ship"), "a ship", "describes a dredging project"),
+    (("voyage", "ship", "axes"), "a ship", "describes a study"),
+    (("hull", "name"), "a dredging project", "describes a ship"),
+    (("hull", "name"), "a ship", None),
+    (("voyage", "ship"), "a study", None),
+    ((), "a study", None),
+])  # fmt: skip
+def test_a_file_of_another_kind_is_named(entries, wanted, words):
+    data = dict.fromkeys(entries, 1)
+    if words is None:
+        refuse_other_file(data, wanted)
+        return
+    with pytest.raises(InputError, match=words) as caught:
+        refuse_other_file(data, wanted)
+    assert f"{wanted} is needed" in caught.value.asked

@@ -13,7 +13,7 @@ from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning import planner
-from thalweg.planning.arrival_planner import _on_time
+from thalweg.planning.arrival_planner import _arrival_of_trial, _first_departure, _on_time
 from thalweg.planning.report.plan_summary import quality_text
 from thalweg.planning.request.requirements import period_of_data
 from thalweg.planning.single.arrival_search import (
@@ -259,3 +259,27 @@ def test_trials_search_no_later_departure(monkeypatch) -> None:
     monkeypatch.setattr(planner, "_plan_alone", plan_alone)
     planned(sea_with_current(0.0), depart=DEPART, arrive=DEPART + mid_speed_time())
     assert asked[-1] and len(asked) > 1 and not any(asked[:-1])
+
+
+def test_the_first_guess_of_a_departure_gives_way_to_one_that_has_a_route() -> None:
+    """A ship that may not wait found the bar closed at the only departure that was tried."""
+
+    def plan_at(depart: float) -> Any:
+        if depart > 10.5 * HOUR:
+            raise NoRouteError("The bar is closed.")
+        return _arriving(depart + HOUR)
+
+    depart, plan = _first_departure(plan_at, 14.0 * HOUR, 0.0)
+    assert depart == pytest.approx(10.0 * HOUR) and plan.best.arrive == pytest.approx(11.0 * HOUR)
+    with pytest.raises(NoRouteError, match="bar"):
+        _first_departure(plan_at, 30.0 * HOUR, 0.0)  # no more than a tide before
+
+
+def test_the_arrival_of_the_slowest_speed_is_that_of_its_own_plan() -> None:
+    """It was that of the track and waits of the highest speed, hours late."""
+
+    def refuse(speed: float) -> Any:
+        raise NoRouteError("Too slow.")
+
+    assert _arrival_of_trial(lambda speed: _arriving(1000.0 / speed), 2.0) == 500.0
+    assert _arrival_of_trial(refuse, 2.0) == math.inf

@@ -238,6 +238,33 @@ def unknown_name_error(
     )
 
 
+#: Entries that files of each kind have, and what takes such a file.
+_FILE_SIGNS: Final = {
+    "a dredging project": ({"load", "unload", "volume_m3"}, "thalweg project FILE plans it"),
+    "a study": ({"voyage"}, "thalweg study run FILE runs it"),
+    "a ship": ({"hull"}, "Give it as --ship FILE, or as the ship of a voyage or a study"),
+}
+
+
+def refuse_other_file(data: Mapping[str, Any], wanted: str) -> None:
+    """Raise `InputError` where the entries of a file are those of another kind of file.
+
+    Parameters
+    ----------
+    data : Entries of the file.
+    wanted : "a ship", "a study" or "a dredging project".
+    """
+    for kind, (entries, remedy) in _FILE_SIGNS.items():
+        if kind != wanted and entries <= set(data):
+            raise InputError(
+                f"The file describes {kind}, and {wanted} is needed.",
+                f"It has the entries {', '.join(sorted(entries))}."
+                if len(entries) > 1
+                else f"It has the entry {min(entries)}.",
+                f"{remedy}.",
+            )
+
+
 def _json_value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(k): _json_value(v) for k, v in value.items()}

@@ -153,7 +153,7 @@ def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
     fastest = plan_at(top)
     slow_arrival = arrival_on(fastest, low)
     if slow_arrival < request.arrive - EARLY:  # its waits may be others than at the highest speed
-        slow_arrival = plan_at(low).best.arrive
+        slow_arrival = _arrival_of_trial(plan_at, low)
     _check_possible(request, fastest, (low, top), slow_arrival)
     # with the sign changed, so that the arrival grows with the value
     search = ArrivalSearch(
@@ -164,19 +164,26 @@ def _at_found_speed(request: ArrivalRequest) -> tuple[Plan, str]:
         _NEAR_SPEED,
     )
     speed, found = solve_arrival(search, (-top, fastest))
+    speed, found = whole_answer(search, speed, lambda value: plan_at(-value, proven=True))
     held = found.best.engine_order or "constant speed"
     if request.voyage.hold == "ground":
         found = _over_ground(request, found)
         held = ENGINE_ORDER
         speed = -_ground_speed(found.best)
-    else:
-        speed, found = whole_answer(search, speed, lambda value: plan_at(-value, proven=True))
     word = {
         "constant power": "Constant power, that of {:.2f} kn in calm water",
         "constant speed": "Constant speed through water of {:.2f} kn",
         ENGINE_ORDER: "Constant speed over ground of {:.2f} kn at sea, set hour by hour",
     }.get(held, "Constant ordered speed of {:.2f} kn")
     return found, f"{word.format(-speed / KNOT)}: {_on_time(found, request)}."
+
+
+def _arrival_of_trial(plan_at: Callable[[float], Plan], speed: float) -> float:
+    """Return the arrival of the plan at a speed; inf where no route is possible at it."""
+    try:
+        return plan_at(speed).best.arrive
+    except NoRouteError:
+        return math.inf
 
 
 def _lowest_speed(request: ArrivalRequest) -> float:

@@ -14,7 +14,7 @@ from typing import Any, Final
 import yaml
 
 from thalweg.chart.zones.zone_set import Zones
-from thalweg.core.errors import InputError, errors_about, unknown_name_error
+from thalweg.core.errors import InputError, errors_about, refuse_other_file, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.core.given_numbers import shortened_repr
 from thalweg.planning.request.voyage_surroundings import check_charges, check_limits
@@ -232,6 +232,7 @@ class Study:
                 f"It has the entries {', '.join(_ENTRIES)}.",
                 "See the example in the documentation.",
             )
+        refuse_other_file(data, "a study")
         for key in data:
             if key in ANNUAL_ENTRIES:
                 raise InputError(

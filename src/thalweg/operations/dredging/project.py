@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.errors import InputError, refuse_other_file, unknown_name_error
 from thalweg.core.file_reading import read_text_file
 from thalweg.core.file_writing import write_text
 from thalweg.core.geodesy import Position, distance
@@ -198,6 +198,7 @@ _ALLOWED_KEYS = (
 
 
 def _check_keys(data: Mapping[str, Any]) -> None:
+    refuse_other_file(data, "a dredging project")
     for key in data:
         if key not in _ALLOWED_KEYS:
             raise unknown_name_error("project entry", str(key), _ALLOWED_KEYS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, refuse_other_file
 from thalweg.ship.file.known_speed_ship_builder import (
     build_known_speed_model,
     estimates_of_known_speeds,
@@ -55,6 +55,7 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
     ------
     InputError : For unknown or missing keys, numbers out of range and impossible hulls.
     """
+    refuse_other_file(data, "a ship")
     file = ShipFile.of(data, source)
     check_possible_numbers(file)
     hull = complete_hull(file.hull.plain())
