@@ -11,7 +11,7 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.waiting_report import PASSES_TIME, stemming_warnings
-from thalweg.planning.single.fewer_waits import with_fewer_waits
+from thalweg.planning.single.fewer_waits import _how_early, with_fewer_waits
 from thalweg.planning.single.late_paths import LatePaths
 from thalweg.planning.single.waits_above_limits import without_waits_above_limits
 
@@ -291,3 +291,11 @@ def test_a_ship_leaves_later_rather_than_stem_a_current(wait):
         assert 1.5 < found.best.waiting_h < 2.7
         (note,) = (note for note in found.notes if "would stem the current" in note)
         assert note.startswith("Arrives ") and "less than 1 kn over ground for 2 h 3" in note
+
+
+@pytest.mark.parametrize(("arrive", "words"), [
+    (100.0 * 3600.0, "as early"), (99.95 * 3600.0, "as early"), (98.0 * 3600.0, "2 h 0 min earlier"),
+])  # fmt: skip
+def test_a_note_on_time_passed_states_how_much_earlier_a_later_departure_arrives(arrive, words):
+    route, other = (SimpleNamespace(arrive=time) for time in (100.0 * 3600.0, arrive))
+    assert _how_early(route, other) == words

@@ -19,7 +19,9 @@ CHART = Chart.open_water(-0.5, 0.5, 0.0, 2.0)
 
 def height(time, lat, lon):
     """Waves east of 1 E that fall from 6 m by 0.37 m per hour, and 1 m to the west."""
-    return np.where(lon > 1.0, 6.0 - 0.37 / 3600.0 * (time - START), 1.0) + 0.0 * lat
+    return np.maximum(
+        np.where(lon > 1.0, 6.0 - 0.37 / 3600.0 * (time - START), 1.0) + 0.0 * lat, 0.0
+    )
 
 
 SEA = Sea.from_functions({WAVES: height})

@@ -183,6 +183,7 @@ def test_a_killed_study_keeps_its_voyages(server):
         time.sleep(0.05)
 
 
+@pytest.mark.slow
 def test_a_study_that_is_queued_again_and_stopped_keeps_its_voyages(server):
     study = {**STUDY["study"], "axes": {"speed_kn": {"from": 8, "to": 13.9, "step": 0.1}}}
     job = server.http.post("/api/v1/studies", json={"study": study}).json()["id"]

@@ -9,7 +9,7 @@ import numpy as np
 
 from thalweg.core.geodesy import distance
 from thalweg.core.time import duration_text, format_time
-from thalweg.core.units import HOUR
+from thalweg.core.units import HOUR, MINUTE
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import (
     LEAST_WAIT_H,
@@ -167,9 +167,15 @@ def passing_time_notes(
     first = route.depart == context.voyage.earliest_departure
     leave = late.track.depart - (context.approach_times[0] if first else 0.0)
     return [
-        f"{sails} Leaving {start} at {format_time(leave)} she arrives as early after "
-        f"{late.distance_nm:.0f} nm: depart then, or permit waits."
+        f"{sails} Leaving {start} at {format_time(leave)} she arrives {_how_early(route, late)} "
+        f"after {late.distance_nm:.0f} nm: depart then, or permit waits."
     ]
+
+
+def _how_early(route: Route, other: Route) -> str:
+    """Return how much earlier another route arrives: "as early", or "2 h earlier"."""
+    earlier = route.arrive - other.arrive
+    return "as early" if earlier < 5.0 * MINUTE else f"{duration_text(earlier)} earlier"
 
 
 def _waits_and_stems(route: Route) -> tuple[bool, int, float]:
