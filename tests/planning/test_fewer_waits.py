@@ -294,7 +294,8 @@ def test_a_ship_leaves_later_rather_than_stem_a_current(wait):
 
 
 @pytest.mark.parametrize(("arrive", "words"), [
-    (100.0 * 3600.0, "as early"), (99.95 * 3600.0, "as early"), (98.0 * 3600.0, "2 h 0 min earlier"),
+    (100.0 * 3600.0, "as early"), (99.95 * 3600.0, "as early"),
+    (98.0 * 3600.0, "2 h 0 min earlier"),
 ])  # fmt: skip
 def test_a_note_on_time_passed_states_how_much_earlier_a_later_departure_arrives(arrive, words):
     route, other = (SimpleNamespace(arrive=time) for time in (100.0 * 3600.0, arrive))
