@@ -254,6 +254,8 @@ def refuse_other_file(data: Mapping[str, Any], wanted: str) -> None:
     data : Entries of the file.
     wanted : "a ship", "a study" or "a dredging project".
     """
+    if not isinstance(data, Mapping):
+        return  # refused by its reader
     for kind, (entries, remedy) in _FILE_SIGNS.items():
         if kind != wanted and entries <= set(data):
             raise InputError(
