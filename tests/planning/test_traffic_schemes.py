@@ -228,6 +228,7 @@ def test_the_fastest_route_of_other_canals_stays_among_alternatives(past_finiste
         ("Singapore Strait", (1.6, 102.9), (2.0, 105.0)),
         ("Singapore Strait", (2.0, 105.0), (1.6, 102.9)),
         ("Malacca Strait", (1.3, 103.3), (3.5, 100.2)),
+        ("Santa Barbara Channel", (34.9, -121.2), (33.5, -118.3)),  # north of its lanes before
     ],
 )
 def test_plans_in_a_strait_keep_its_separation_line_to_port_over_the_whole_width(name, start, goal):
