@@ -215,7 +215,10 @@ def test_the_traffic_route_of_uraga_is_west_of_daini_kaiho():
 
 
 @pytest.mark.parametrize(("area", "inside", "outside"), [
-    ("Great Bahama Bank", (21.80, -75.70), (21.60, -75.76)),
+    ("Great Bahama Bank along", (21.80, -75.70), (21.60, -75.76)),
+    ("Great Bahama Bank (north)", (25.60, -78.30), (25.90, -78.45)),
+    ("Blunts Reef", (40.44, -124.50), (40.44, -124.54)),
+    ("Demerara flats", (6.87, -58.00), (6.90, -58.15)),
     ("Dangerous Ground", (10.10, 117.35), (10.30, 118.00)),
     ("Rifleman Bank", (7.55, 111.56), (7.40, 111.30)),
     ("Burford Bank", (53.32, -6.02), (53.345, -6.02)),
@@ -234,6 +237,8 @@ def test_banks_are_named_areas_and_the_channels_beside_them_are_not(area, inside
     ("GBSOU", (50.7448, -1.0835), 0.2),  # between the forts
     ("USSFO", (37.7550, -122.6900), 0.2),  # the pilot buoy
     ("ARBUE", (-35.1600, -56.3000), 0.2),  # west of English Bank
+    ("USORF", (36.9965, -76.3050), 0.1),  # north of Fort Wool, not through the trestle
+    ("GBFAL", (50.1420, -5.0280), 0.1),  # between Pendennis and Saint Anthony Head
 ])  # fmt: skip
 def test_approaches_follow_their_channels(port, place, within_nm):
     assert least_miles(approach(port).line, place) < within_nm
