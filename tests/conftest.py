@@ -30,7 +30,7 @@ settings.register_profile(
 settings.load_profile("thalweg")
 
 # As on the command line: tests make many objects that last, which each collection goes through.
-gc.set_threshold(50_000, 20, 20)
+gc.set_threshold(10_000)
 
 # A shell that starts the tests in the background lets them ignore Ctrl-C; tests of it need it.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
