@@ -9,7 +9,7 @@ import pytest
 
 from tests.sea.small_datasets import regular
 from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
-from thalweg.core.errors import InputError, OutsidePeriodError
+from thalweg.core.errors import InputError, NoPathError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning import planner
@@ -273,6 +273,15 @@ def test_the_first_guess_of_a_departure_gives_way_to_one_that_has_a_route() -> N
     assert depart == pytest.approx(10.0 * HOUR) and plan.best.arrive == pytest.approx(11.0 * HOUR)
     with pytest.raises(NoRouteError, match="bar"):
         _first_departure(plan_at, 30.0 * HOUR, 0.0)  # no more than a tide before
+    tried: list[float] = []
+
+    def no_way(depart: float) -> Any:
+        tried.append(depart)
+        raise NoPathError("No water joins them.")
+
+    with pytest.raises(NoPathError):
+        _first_departure(no_way, 14.0 * HOUR, 0.0)
+    assert len(tried) == 1  # no departure opens it
 
 
 def test_the_arrival_of_the_slowest_speed_is_that_of_its_own_plan() -> None:

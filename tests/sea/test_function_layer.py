@@ -318,3 +318,14 @@ def test_a_negative_wave_height_is_refused_where_it_is_read():
         sea.sample([name], 0.0, 50.0, 0.0)
     unknown = Sea.from_functions({name: lambda t, y, x: np.nan + 0.0 * y})
     assert np.isnan(unknown.sample([name], 0.0, 50.0, 0.0)[name]).all()
+
+
+def test_a_negative_wind_speed_is_refused_and_turns_no_wind_round():
+    sea = Sea.from_functions(
+        {
+            "wind_speed": lambda t, y, x: -5.0 + 0.0 * y,
+            "wind_from_direction": lambda t, y, x: 90.0 + 0.0 * y,
+        }
+    )
+    with pytest.raises(DatasetError, match="wind_speed returns -5"):
+        sea.sample(["eastward_wind"], 0.0, 50.0, 0.0)

@@ -499,7 +499,8 @@ def test_a_misspelt_port_is_refused_before_the_study_starts(tmp_path):
     assert not (tmp_path / "out" / "study.json").exists()
 
 
-def test_an_ensemble_without_a_member_is_no_single_forecast(folder, tmp_path, capsys):
+@pytest.mark.parametrize("detail", ["refined", "network"])
+def test_an_ensemble_without_a_member_is_no_single_forecast(folder, tmp_path, capsys, detail):
     """The row had the figures of one member that it did not name."""
     with xr.open_dataset(folder / "year.nc") as year:
         short = year.isel(time=slice(0, 400)).load()
@@ -510,6 +511,7 @@ def test_an_ensemble_without_a_member_is_no_single_forecast(folder, tmp_path, ca
         "sea": "members.nc",
         "ship": {"name": "s", "speeds_kn": [10.0], "hull": {"draught_m": 4.0}},
         "coast": "none",
+        "detail": detail,
     }
     (tmp_path / "e.yaml").write_text(yaml.safe_dump(entries))
     assert main(["study", "run", str(tmp_path / "e.yaml"), "--out", str(tmp_path / "out")]) == 2

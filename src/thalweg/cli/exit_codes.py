@@ -13,11 +13,14 @@ INTERRUPTED = 130  # after Ctrl-C, as shells do
 
 def exit_code(error: ThalwegError) -> int:
     """Return 2 for bad input, 3 for missing coverage, 4 for no route."""
-    if isinstance(error, NoRouteError):
+    return exit_code_of_kind(type(error))
+
+
+def exit_code_of_kind(kind: type[ThalwegError]) -> int:
+    """Return the exit code of errors of a class."""
+    if issubclass(kind, NoRouteError):
         return NO_ROUTE
-    if isinstance(error, CoverageError):
-        return NO_COVERAGE
-    return BAD_INPUT
+    return NO_COVERAGE if issubclass(kind, CoverageError) else BAD_INPUT
 
 
 def print_error(error: ThalwegError, *, as_json: bool) -> int:

@@ -11,8 +11,9 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from thalweg.cli.exit_codes import BAD_INPUT, NO_COVERAGE, NO_ROUTE, SUCCESS
+from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS, exit_code_of_kind
 from thalweg.cli.progress import ProgressMessages
+from thalweg.core import errors
 from thalweg.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def _run(arguments: argparse.Namespace) -> int:
     report: ProgressMessages = arguments.progress
     report(f"planning {study.size} voyages")
     reasons: Counter[str] = Counter()
-    kinds: Counter[str] = Counter()
+    kinds: set[str] = set()
 
     def progress(state: StudyProgress) -> None:
         kinds.update(str(row["refusal"]) for row in state.rows if not has_route(row))
@@ -108,7 +109,9 @@ def _run(arguments: argparse.Namespace) -> int:
         print(f"{count} of these: {reason}")
     if not state.new or state.refused < state.new:
         return SUCCESS
-    return _EXIT_CODES.get(next(iter(kinds)), NO_ROUTE) if len(kinds) == 1 else NO_ROUTE
+    # a route that breaks a limit and a fault of Thalweg are no errors of the request
+    codes = {exit_code_of_kind(getattr(errors, kind, errors.NoRouteError)) for kind in kinds}
+    return codes.pop() if len(codes) == 1 else NO_ROUTE
 
 
 def _refuse_ready_name(given: str) -> None:
@@ -146,14 +149,6 @@ def _words(state: StudyProgress) -> str:
     )
 
 
-#: Where all voyages are refused for the same kind of error.
-_EXIT_CODES: Final = {
-    "InputError": BAD_INPUT,
-    **dict.fromkeys(
-        ("CoverageError", "OutsideAreaError", "OutsidePeriodError", "MissingVariableError"),
-        NO_COVERAGE,
-    ),
-}
 _SHOWN_VOYAGES: Final = 10
 #: Figures on the terminal, where they are known and not all zero; the files have all of them.
 _SHOWN_FIGURES: Final = (

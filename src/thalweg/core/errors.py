@@ -260,9 +260,7 @@ def refuse_other_file(data: Mapping[str, Any], wanted: str) -> None:
         if kind != wanted and entries <= set(data):
             raise InputError(
                 f"The file describes {kind}, and {wanted} is needed.",
-                f"It has the entries {', '.join(sorted(entries))}."
-                if len(entries) > 1
-                else f"It has the entry {min(entries)}.",
+                f"It has {' and '.join(sorted(entries))}.",
                 f"{remedy}.",
             )
 

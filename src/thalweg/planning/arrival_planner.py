@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.errors import InputError, NoPathError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.time import duration_text, format_time, utc_text
 from thalweg.core.units import HOUR, KNOT
@@ -242,7 +242,11 @@ def _latest_departure(request: ArrivalRequest) -> tuple[Plan, str]:
     first = period_of_data(ship, request.sea)[0]
     ends = [resolve_endpoint(p, request.chart, "place") for p in (voyage.start, voyage.goal)]
     away = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon)) / float(speed)
-    guess, plan = _first_departure(plan_at, max(request.arrive - away, first), first)
+    guess = max(request.arrive - away, first)
+    if voyage.wait:
+        plan = plan_at(guess)
+    else:
+        guess, plan = _first_departure(plan_at, guess, first)
     if guess == first and plan.best.arrive > request.arrive + LATE:
         raise _data_begin_too_late(request, first, plan.best.arrive)
     earliest = max(first, request.arrive - _LONGEST_RATIO * (away + plan.best.time_h * HOUR))
@@ -274,6 +278,8 @@ def _first_departure(
     while True:
         try:
             return depart, plan_at(depart)
+        except NoPathError:
+            raise
         except NoRouteError:
             depart -= HOUR
             if depart < max(first, guess - _TRIED_BEFORE):

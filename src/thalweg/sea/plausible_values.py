@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -81,23 +80,25 @@ def check_plausible(name: str, value: NDArray[Any], variables: list[str], source
     )
 
 
-def check_not_negative(values: Mapping[str, NDArray[Any]]) -> None:
-    """Raise `DatasetError` if functions return negative heights, periods or speeds.
+def check_not_negative(name: str, value: NDArray[Any]) -> None:
+    """Raise `DatasetError` if a function returns a negative height, period or speed.
 
     Parameters
     ----------
-    values : What the functions return [SI], by canonical name.
+    name : Standard name of what the function returns.
+    value : What it returned [SI].
     """
-    for name in NEVER_NEGATIVE.intersection(values):
-        least = float(np.fmin.reduce(np.ravel(values[name]), initial=np.inf))
-        if least < -NEGATIVE_TOLERANCE:
-            raise DatasetError(
-                f"The function of {name} returns {least:g}.",
-                "It is never negative; NaN stands for a value that is not known.",
-                "Correct the function.",
-                variable=name,
-                value=least,
-            )
+    if nm.canonical_name(name) not in NEVER_NEGATIVE:
+        return
+    least = float(np.fmin.reduce(np.ravel(value), initial=np.inf))
+    if least < -NEGATIVE_TOLERANCE:
+        raise DatasetError(
+            f"The function of {name} returns {least:g}.",
+            "It is never negative; NaN stands for a value that is not known.",
+            "Correct the function.",
+            variable=name,
+            value=least,
+        )
 
 
 def without_packing_error(name: str, value: NDArray[Any]) -> NDArray[Any]:

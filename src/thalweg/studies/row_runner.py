@@ -117,14 +117,6 @@ def _figures(request: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the key figures of the route of a request."""
     ship = ship_of_request(request, str(folder))
     sea = _sea(request, folder)
-    if sea.members:
-        raise InputError(
-            f"The sea is a forecast of {sea.members} members, and the study names none.",
-            "A row of a study has the figures of one route in one forecast.",
-            "Add the axis member, such as axes: {member: [0, 1, 2]}, or one member; thalweg plan "
-            "shows the mean of an ensemble.",
-            field="member",
-        )
     chart = _chart_of(request, str(folder))
     voyage = request["voyage"]
     if "track" in request:
@@ -314,6 +306,14 @@ def _sea(request: Mapping[str, Any], folder: Path) -> Sea:
     sea = _opened_sea(canonical_json(parts), str(folder))
     member = request.get("member")
     sea = sea if member is None else sea.member(int(member))
+    if sea.members:
+        raise InputError(
+            f"The sea is a forecast of {sea.members} members, and the study names none.",
+            "A row of a study has the figures of one route in one forecast.",
+            "Add the axis member, such as axes: {member: [0, 1, 2]}, or one member; thalweg plan "
+            "shows the mean of an ensemble.",
+            field="member",
+        )
     return sea.sampled(str(request.get("sampling", "linear")))
 
 

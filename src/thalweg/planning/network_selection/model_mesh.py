@@ -114,6 +114,7 @@ def flow_statistics(
         return None, None
     times = _times(sea, start, end)
     flow = sea.series(standard_names.CURRENT.pair, times, model.lat, model.lon)
+    # only the density of the nodes: the search reads the currents as they are
     east, north = (np.nan_to_num(flow[name]).T for name in standard_names.CURRENT.pair)
     speed = np.hypot(east, north).max(axis=0)
     curl = dimensionless_curl(

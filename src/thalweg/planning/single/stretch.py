@@ -140,7 +140,9 @@ def plan_stretch(
             left = without_exceeding_paths(context, networks[finer], places, path)
             if left is not networks[finer]:
                 rounds, networks[finer] = rounds + 1, left
-                attempts.extendleft(((finer, step), (finer, 0))[0 if step else 1 :])
+                attempts.appendleft((finer, step))
+                if step:
+                    attempts.appendleft((finer, 0))  # the limits themselves first
     assert stretch is not None  # raised above otherwise
     if not stretch.route.feasible:
         check_times_known(stretch.route, start, goal)

@@ -221,7 +221,6 @@ def layer_of_functions(
         for name in names:
             if name not in done:
                 done.update(makers[name](time, lat, lon))
-        check_not_negative(done)
         return {name: done[name] for name in names}
 
     return FormulaLayer(frozenset(makers), evaluate, "formula", box, span, step)
@@ -353,8 +352,7 @@ def _checked(name: str, function: FieldFunction) -> FieldFunction:
         try:
             if np.iscomplexobj(result):
                 raise TypeError
-            value = np.asarray(result, dtype=np.float64)
-            return value if value.shape == time.shape else np.broadcast_to(value, time.shape).copy()
+            value = np.broadcast_to(np.asarray(result, dtype=np.float64), time.shape)
         except (TypeError, ValueError):
             raise InputError(
                 f"The function for {name!r} returned {_describe(result)} "
@@ -363,6 +361,8 @@ def _checked(name: str, function: FieldFunction) -> FieldFunction:
                 "Write it with NumPy operations on time, lat and lon.",
                 field=name,
             ) from None
+        check_not_negative(name, value)
+        return value if value.flags.writeable else value.copy()
 
     return call
 
