@@ -19,6 +19,8 @@ from thalweg.chart.ports import PORTS
         ),
         ("Rouen", ["Pont de Brotonne", "Pont de Tancarville", "Pont de Normandie"]),
         ("Montreal", ["Laviolette Bridge", "Quebec Bridge"]),
+        ("Goole", ["Humber Bridge"]),
+        ("Grangemouth", ["Forth Bridges"]),
         ("Le Havre", []),
         ("Rotterdam", []),
     ],

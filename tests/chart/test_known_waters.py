@@ -182,6 +182,9 @@ ROCKS_AND_WORKS = {
     "No Man's Land Fort": (50.7395, -1.0948),
     "Chesapeake trestle, north": (37.0523, -76.0480),
     "Chesapeake trestle, south": (36.9400, -76.1230),
+    "Hong Kong link": (22.2830, 113.8200),
+    "Zhuhai link": (22.2700, 113.6505),
+    "Isla de Lobos": (-35.0250, -54.8830),
 }
 
 
@@ -192,12 +195,29 @@ def test_rocks_and_trestles_are_land(name):
     assert not Chart.gshhg("i").is_navigable(*place)
 
 
-def test_ships_pass_over_the_tunnel_of_the_chesapeake_channel():
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("Chesapeake Channel (Bridge-Tunnel)", (37.0305, -76.0855)),
+        ("Lingding and Tonggu Channels (over the tunnel)", (22.2830, 113.7540)),
+        ("Qingzhou Channel (Hong Kong-Zhuhai-Macao link)", (22.2800, 113.6740)),
+    ],
+)
+def test_ships_pass_over_the_tunnel_or_under_the_high_span(name, place):
     chart = Chart.gshhg("i")
-    (channel,) = find_passages(["Chesapeake Channel (Bridge-Tunnel)"])
+    (channel,) = find_passages([name])
     lat, lon, _ = densify(*np.array(channel.line).T, 200.0)
     assert np.all(chart.is_navigable(lat, lon))
-    assert np.min(distance(lat, lon, 37.0305, -76.0855)) < 200.0
+    assert np.min(distance(lat, lon, *place)) < 200.0
+
+
+@pytest.mark.parametrize("port", ["Shekou", "Chiwan"])
+def test_the_ports_of_shenzhen_are_reached_over_the_tunnel(port):
+    """The line led through the bridge 1.5 nm east of the tunnel."""
+    line = dense_line(approach(port).line)
+    line = line[line[:, 0] < 22.42]
+    assert np.all(Chart.gshhg("i").is_navigable(line[:, 0], line[:, 1]))
+    assert np.min(distance(22.2830, 113.7640, line[:, 0], line[:, 1])) < 0.5 * NAUTICAL_MILE
 
 
 def test_the_old_bahama_channel_is_off_the_bank():

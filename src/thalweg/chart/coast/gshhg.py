@@ -53,6 +53,10 @@ CLOSED_NARROWS: Final[dict[str, tuple[tuple[float, float], ...]]] = {
     "Chesapeake trestle north": ((37.0365, -76.0810), (37.0680, -76.0150)),
     "Chesapeake trestle middle": ((36.9745, -76.1065), (37.0245, -76.0895)),
     "Chesapeake trestle south": ((36.9100, -76.1340), (36.9610, -76.1150)),
+    # bridges of the Hong Kong-Zhuhai-Macao link, between its tunnel and its high spans
+    "Hong Kong link": ((22.2830, 113.7850), (22.2830, 113.8480), (22.2930, 113.8950)),
+    "Zhuhai link east": ((22.2820, 113.7225), (22.2807, 113.6800)),
+    "Zhuhai link west": ((22.2790, 113.6680), (22.2620, 113.6350), (22.2150, 113.5550)),
 }
 _DAM_HALF_WIDTH: Final = 0.0005  # [deg]
 
