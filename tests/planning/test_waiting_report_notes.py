@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thalweg import Sea, Ship, evaluate
+from thalweg import Sea, Ship, Voyage, evaluate, plan
 from thalweg.core.units import KNOT
 from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.waiting_report import (
+    WAITS_TO_LEAVE,
     stemming_warnings,
     stream_warnings,
     unknown_current_warnings,
@@ -92,3 +93,21 @@ def test_a_wait_for_an_unknown_current_is_no_wait_for_a_tide():
     known = {**samples, "eastward_sea_water_velocity": np.zeros(31)}
     assert unknown_current_warnings(replace(route, wait_samples=known)) == []
     assert unknown_current_warnings(replace(route, wait_samples={})) == []
+
+
+def test_a_plan_that_cannot_leave_for_want_of_data_says_so():
+    """The current is known from 02:00 on: the wait before is no wait for a tide."""
+    begin = 1767225600.0
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: np.where(
+                t < begin + 7200.0, np.nan, 0.2
+            ),
+            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
+        }
+    )
+    voyage = Voyage(start=(0, -5), goal=(0, -4.5), depart="2026-01-01")
+    answer = plan(voyage, ship=Ship.simple(speed_kn=10.0), sea=sea)
+    (note,) = (one for one in answer.notes if one.startswith(WAITS_TO_LEAVE))
+    assert "at 0.0000N 5.0000W since the data have no current there from 2026-01-01 00:00" in note
+    assert count_of_dangers([note]) == 1

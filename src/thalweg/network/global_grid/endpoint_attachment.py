@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -298,16 +298,32 @@ def _approach(chart: Chart, waters: ConnectedWaters, place: Position) -> Attachm
         if any(float(distance(*goal, *other)) < 0.3 * separation[k] for other in tried):
             continue
         tried.append(goal)
-        path = _fine_path(chart, place, goal)
+        path = _fine_path(_FinePathRequest.on_chart(chart, place, goal))
         if path is not None:
             return _attach_along(chart, waters, path, nodes[k])
     return None
 
 
-def _fine_path(
-    chart: Chart, start: Position, goal: Position
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return the shortest path on a fine lattice between near positions."""
+@dataclass(frozen=True)
+class _FinePathRequest:
+    """A path on a fine lattice; two requests for the same ends on the same chart are equal."""
+
+    chart: Chart = field(compare=False)
+    chart_key: tuple[str, ...]
+    start: Position
+    goal: Position
+
+    @classmethod
+    def on_chart(cls, chart: Chart, start: Position, goal: Position) -> _FinePathRequest:
+        sea = chart.without_canals("all")
+        key = sea.fingerprint(), *(passage.name for passage in sea.passages)
+        return cls(sea, key, start, goal)
+
+
+@lru_cache(maxsize=16)  # one plan asks for those of its ends a dozen times
+def _fine_path(request: _FinePathRequest) -> tuple[FloatArray, FloatArray] | None:
+    """Return the shortest path on a fine lattice between near positions; None where none is."""
+    chart, start, goal = request.chart, request.start, request.goal
     separation = float(distance(*start, *goal))
     margin = max(separation, 15.0 * NAUTICAL_MILE) / (60.0 * NAUTICAL_MILE)
     east = margin / max(float(np.cos(np.radians(start[0]))), 0.05)
@@ -317,7 +333,7 @@ def _fine_path(
     south = max(min(start[0], goal[0]) - margin, -89.9)
     area = (south, min(max(start[0], goal[0]) + margin, 89.9), middle - wide, middle + wide)
     try:
-        fine = lattice(chart.without_canals("all"), start, goal, area=area, directions=16)
+        fine = lattice(chart, start, goal, area=area, directions=16)
     except NoRouteError:
         return None
     _, path = shortest_path(fine, fine.meta.start, fine.meta.goal)

@@ -35,6 +35,7 @@ from thalweg.planning.report.waiting_report import (
     STEMS,
     STRONG_STREAM,
     WAITS,
+    WAITS_TO_LEAVE,
 )
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.report.zone_report import FAR_AREAS, OVER_SPEED
@@ -62,7 +63,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (OVER_LAND, PORT_TOO_SHALLOW, APPROACH_TOO_SMALL, LOW_BRIDGE),
     LIMIT_EXCEEDED,
     SQUAT_UNCOUNTED,
-    WAITS,
+    (WAITS, WAITS_TO_LEAVE),
     PASSES_TIME,
     (STEMS, STRONG_STREAM),
     TOO_STEEP,

@@ -22,6 +22,7 @@ from thalweg.sea.standard_names import (
 from thalweg.ship import Ship
 
 WAITS: Final = "Waits at sea"  #: notes on weather in a wait begin so
+WAITS_TO_LEAVE: Final = "Waits before she leaves"  #: a note on missing data begins so
 _NOT_SEEN: Final = "no arrival in the hours searched"  # a plan for that departure may look on
 DEPARTURES: Final = "Departures in the window"  #: a note on them begins so
 _SHOWN: Final = 7  # departures of a window
@@ -51,17 +52,21 @@ def waiting_weather_warnings(route: Route, ship: Ship) -> list[str]:
 
 
 def unknown_current_warnings(route: Route) -> list[str]:
-    """Return a warning where a ship waits at sea because the current is not known there."""
+    """Return a warning where a ship waits because the current is not known there.
+
+    She may do so at sea, or before she leaves.
+    """
     current = route.wait_samples.get(EASTWARD_CURRENT)
     if current is None:
         return []
     notes = []
-    for place, _, lying in _waits(route):
+    for place, _, lying in _waits(route, from_leg=0):
         unknown = lying & np.isnan(current)
         if unknown.any():
             times = route.wait_samples["time"][unknown]
+            begin = WAITS if route.wait_samples["leg"][unknown][0] > 0 else WAITS_TO_LEAVE
             notes.append(
-                f"{WAITS} at {format_position(*place)} since the data have no current there from "
+                f"{begin} at {format_position(*place)} since the data have no current there from "
                 f"{utc_text(float(times[0]))} to {utc_text(float(times[-1]))}: it is no wait for "
                 "a tide. Add data, or fill the gap (--fill currents=...)."
             )
@@ -148,12 +153,17 @@ def _limited_weather(route: Route, ship: Ship) -> list[tuple[str, FloatArray, fl
     ]
 
 
-def _waits(route: Route) -> Iterator[tuple[tuple[float, float], float, BoolArray]]:
-    """Yield of each wait on the way its position [deg], its length [h] and which samples it has."""
+def _waits(
+    route: Route, from_leg: int = 1
+) -> Iterator[tuple[tuple[float, float], float, BoolArray]]:
+    """Yield of each wait its position [deg], its length [h] and which samples it has.
+
+    Waits are those at the first waypoints of the legs from one on; leg 0 begins at the berth.
+    """
     if not route.wait_samples:
         return
     leg, time = route.wait_samples["leg"], route.wait_samples["time"]
-    for number in np.unique(leg[leg > 0]):
+    for number in np.unique(leg[leg >= from_leg]):
         lying = leg == number
         hours = float(np.ptp(time[lying])) / HOUR
         if hours > LEAST_WAIT_H:
