@@ -418,15 +418,15 @@ def test_a_ship_too_high_for_a_canal_takes_the_main_approach_and_is_stated_close
         "draught_m": 9.0, "block_coefficient": 0.66, "air_draught_m": 63.0,
     }  # fmt: skip
     ship = Ship.from_dict({"name": "cruise", "hull": hull, "speeds_kn": [18.0]})
-    high = thalweg.distance("Rotterdam", "Baltimore", ship=ship)
+    high = thalweg.distance("New York", "Baltimore", ship=ship)
     assert not [name for name, _ in high.approaches if "Delaware" in name]
     assert any("Chesapeake Bay Bridge" in note for note in high.notes)
-    low = thalweg.distance("Rotterdam", "Baltimore", draught_m=9.0)
+    low = thalweg.distance("New York", "Baltimore", draught_m=9.0)
     assert [name for name, _ in low.approaches if "Delaware" in name]
-    vancouver = thalweg.distance("Rotterdam", "Vancouver, CA", ship=ship)
-    (note,) = [note for note in vancouver.notes if note.startswith("Passage closed: Panama Canal")]
+    round_the_horn = thalweg.distance("Kingston, JM", "San Francisco, US", ship=ship)
+    (note,) = [note for note in round_the_horn.notes if note.startswith("Passage closed: Panama Canal")]
     assert "the air draught of 63 m is over the 57.91 m allowed. The way through is about" in note
     with pytest.raises(NoRouteError, match="Bosporus: the air draught of 63 m is over the 58 m"):
-        thalweg.distance("Rotterdam", "Odesa", ship=ship)
-    opened = thalweg.distance("Rotterdam", "Odesa", ship=ship, open=["Bosporus"])
+        thalweg.distance("Piraeus", "Odesa", ship=ship)
+    opened = thalweg.distance("Piraeus", "Odesa", ship=ship, open=["Bosporus"])
     assert "Bosporus" in opened.straits
