@@ -424,7 +424,9 @@ def test_a_ship_too_high_for_a_canal_takes_the_main_approach_and_is_stated_close
     low = thalweg.distance("New York", "Baltimore", draught_m=9.0)
     assert [name for name, _ in low.approaches if "Delaware" in name]
     round_the_horn = thalweg.distance("Kingston, JM", "San Francisco, US", ship=ship)
-    (note,) = [note for note in round_the_horn.notes if note.startswith("Passage closed: Panama Canal")]
+    (note,) = [
+        note for note in round_the_horn.notes if note.startswith("Passage closed: Panama Canal")
+    ]
     assert "the air draught of 63 m is over the 57.91 m allowed. The way through is about" in note
     with pytest.raises(NoRouteError, match="Bosporus: the air draught of 63 m is over the 58 m"):
         thalweg.distance("Piraeus", "Odesa", ship=ship)

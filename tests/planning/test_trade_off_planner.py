@@ -328,6 +328,7 @@ def test_slower_settings_remain_where_waves_forbid_the_highest():
     )
     assert all(route.feasible for route in found.routes)
     assert found.best.time_h == pytest.approx(LENGTH / (18.0 * KNOT) / HOUR, rel=2e-3)
+    assert sum("network of your own builder" in note for note in found.notes) == 1
 
 
 @pytest.mark.slow

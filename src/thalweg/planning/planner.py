@@ -93,7 +93,8 @@ def plan(
         How the network is built; see `thalweg.planning.NetworkChoice`. With a file made by
         ``thalweg history build``, or a
         `thalweg.network.history.history_corridor.HistoryCorridor`, the plan stays in the water
-        that ships usually use.
+        that ships usually use. The search uses the edges of a builder's network; the refined route
+        may leave them.
     resolution : float, optional
         Spacing of the network [m]; by default it depends on the distance.
     proof : float, optional

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -52,6 +52,10 @@ _LEAST_KEPT, _SHORTEST_SLOW = 0.25, 1.0  # of the ordered speed; [h]
 _OF_METHODS = (WAVES_UNCOUNTED, WAVES_OUT_OF_RANGE, OUT_OF_RANGE, BELOW_LOWEST)
 #: Years between which a departure needs no warning: the reanalysis ERA5 begins in 1940.
 _FIRST_YEAR, _LAST_YEAR = "1940", "2100"
+_GIVEN_NETWORK: Final = (
+    "The search used the network of your own builder; the route is refined in open water and may "
+    "leave its edges. To keep ships out of other water, close it with zones."
+)
 
 
 def route_warnings(context: PlanningContext, route: Route) -> list[str]:
@@ -77,6 +81,8 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
         notes += unread_weather_notes(route, context.sea, context.ship)
     if context.voyage.objective == "comfort":
         notes += comfort_turn_notes(route)
+    if callable(context.choice.network):
+        notes.append(_GIVEN_NETWORK)
     notes += unknown_current_warnings(route) + waiting_weather_warnings(route, context.ship)
     notes += heavy_weather_warnings(route, context.ship)
     notes += waiting_notes(route) + lane_notes(context.chart, route)
