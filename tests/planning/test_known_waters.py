@@ -7,6 +7,7 @@ import pytest
 
 from tests.planning.distances import sea_distance
 from thalweg import Sea, Ship, Voyage, plan
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
@@ -213,3 +214,31 @@ def test_plans_of_coasters_are_as_long_as_distances(start, goal, miles):
 def test_one_approach_is_left_early_where_both_lead_over_shoals():
     found = sea_distance("Hong Kong", "Huangpu")
     assert not any("Turns back" in note for note in found.notes)
+
+
+def test_the_tail_of_the_horseshoe_stays_closed_where_the_depth_layer_opens():
+    """The layer has too little depth in Chesapeake Bay: all shoals were opened before."""
+    ship = Ship.simple(speed_kn=14.0, draught_m=11.0, length_m=180.0, breadth_m=30.0)
+    found = calm_plan("Norfolk, US", "Baltimore, US", ship)
+    (note,) = (note for note in found.notes if note.startswith("The route crosses shoal water"))
+    assert note.startswith("The route crosses shoal water, but for named areas of exact outline:")
+    line = track(found.best)
+    for name in ("Tail of the Horseshoe", "Point No Point (Chesapeake Bay)"):
+        (area,) = (area for area in SHOAL_AREAS if area.name == name)
+        assert not area.contains(*line).any()
+    assert miles_from((38.9935, -76.3825), *line) < 0.1  # main span of the Bay Bridge
+    assert miles_from((37.0305, -76.0855), *line) < 0.5  # tunnel of the Chesapeake Channel
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "near", "far"),
+    [
+        ("Kotka", "Helsinki, FI", None, (59.9851, 25.6010)),  # Kalbadagrund: 0.1 nm off before
+        ("Batam", "Palembang", (1.0810, 104.2000), None),  # Riau Strait
+    ],
+)
+def test_coasters_keep_off_a_light_and_use_a_strait(start, goal, near, far):
+    coaster = Ship.simple(speed_kn=11.0, draught_m=5.5, length_m=88.0)
+    line = track(calm_plan(start, goal, coaster).best)
+    assert near is None or miles_from(near, *line) < 1.0
+    assert far is None or miles_from(far, *line) > 1.0

@@ -74,7 +74,15 @@ def test_shoals_open_round_the_end_that_no_water_leads_to(world):
 
 def test_shoals_open_everywhere_where_the_way_ends_between(world):
     tries, notes = attempts(world, [COLOMBO, CHITTAGONG], (14.0, 86.0))
-    assert [one["Colombo"][0] for one in tries] == [8.0, np.inf]
+    assert [one["Colombo"][0] for one in tries] == [8.0, 0.0]
+    assert any(note.startswith(f"{SHOALS_OPENED}, but for named areas of exact") for note in notes)
+
+
+def test_named_areas_of_exact_outline_open_last(world):
+    tries, notes = attempts(world, [COLOMBO, CHITTAGONG], *9 * [(14.0, 86.0)])
+    radii = [one["Colombo"][0] for one in tries]
+    assert radii[:2] == [8.0, 0.0] and radii[-1] == np.inf
+    assert set(radii[1:-1]) == {0.0}  # nearer and nearer to land
     assert any(note.startswith(f"{SHOALS_OPENED}: with that water") for note in notes)
 
 

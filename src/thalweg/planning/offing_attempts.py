@@ -19,7 +19,11 @@ from thalweg.planning.request.offing_choice import (
     offing_note,
     ship_dimensions,
 )
-from thalweg.planning.request.shoal_choice import SHOALS_OPENED, close_shoals
+from thalweg.planning.request.shoal_choice import (
+    SHOALS_OPENED,
+    close_exact_areas,
+    close_shoals,
+)
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
 
@@ -58,12 +62,14 @@ class _Attempt:
     share : Of the offing that is kept.
     radius : Round the ends, within which ``near_share`` of the offing is enough [m]; 0 for none.
     shoals : Radius round the ends in which shoals are open [m].
+    areas : Whether named areas of exact outline stay closed where shoals are open.
     """
 
     share: float
     radius: float
     near_share: float
     shoals: float
+    areas: bool = True
 
     @property
     def is_of_ends(self) -> bool:
@@ -80,8 +86,8 @@ def plan_off_land(
     """Plan at an offing with shoals closed; where no route exists, with less of both.
 
     First round the end that the water does not lead to or from: shoals open there, then the
-    distance from land is smaller. Then shoals open everywhere, and last the offing is a half, a
-    quarter and none.
+    distance from land is smaller. Then shoals open everywhere but in named areas of exact outline,
+    and the offing is a half, a quarter and none; last these areas open as well.
 
     Parameters
     ----------
@@ -123,6 +129,10 @@ def plan_off_land(
                 continue
             chart, reopened = open_sills(chart, ends)
             notes += [reopened, note] if reopened else [note]
+        elif attempt.areas:
+            open_chart, chart = chart, close_exact_areas(chart, ends)
+            if chart is open_chart:
+                continue
         if can_close and attempt.shoals > _CLOSED:
             notes.append(_opened_note(attempt, [ends[number] for number in which]))
         limits = replace(context.needs.limits, offing=kept)
@@ -153,7 +163,8 @@ def _attempts(ends: Sequence[Endpoint]) -> list[_Attempt]:
     found = [_Attempt(*_OFFINGS[0], _CLOSED)]
     found += [_Attempt(*_OFFINGS[0], radius) for radius in _ROUND_ENDS if radius <= near]
     found += [_Attempt(*one, _CLOSED) for one in _OFFINGS[1:4] if one[1] <= near]
-    return found + [_Attempt(*one, _OPEN) for one in _OFFINGS if one[1] <= near]
+    offings = [one for one in _OFFINGS if one[1] <= near]
+    return found + [_Attempt(*one, _OPEN, areas) for areas in (True, False) for one in offings]
 
 
 def _with_enclosed_end(
@@ -176,7 +187,8 @@ def _with_enclosed_end(
 def _opened_note(attempt: _Attempt, ends: Sequence[Endpoint]) -> str:
     """Return a note on shoals that are open because no route leads round them."""
     if attempt.shoals == _OPEN:
-        return f"{SHOALS_OPENED}: with that water closed no route was found. {_CHECK}"
+        but = ", but for named areas of exact outline" if attempt.areas else ""
+        return f"{SHOALS_OPENED}{but}: with that water closed no route was found. {_CHECK}"
     names = " and ".join(end.name for end in ends)
     return (
         f"{SHOALS_OPENED} within {attempt.shoals / NAUTICAL_MILE:.0f} nm of {names}: "

@@ -146,6 +146,33 @@ def close_shoals(
     return replace(chart, zones=replace(chart.zones, closed_shoals=closed)), note, ()
 
 
+def close_exact_areas(chart: Chart, ends: Sequence[Endpoint]) -> Chart:
+    """Return the chart with the named areas of exact outline closed, and no other shoal water.
+
+    Areas with an end inside are open.
+
+    Parameters
+    ----------
+    chart : With its shoal water.
+
+    Returns
+    -------
+    Chart : The chart itself where there are none.
+    """
+    shoals = chart.zones.shoals
+    if shoals is None or shoals.least <= 0.0:
+        return chart
+    closed = ClosedShoals(
+        0.0,
+        discs=tuple((float(end.lat), float(end.lon), 0.0) for end in ends),
+        box=_region(ends),
+        area_depth=closing_depth_of_areas(shoals.least),
+    )
+    if not closed.shapes:
+        return chart
+    return replace(chart, zones=replace(chart.zones, closed_shoals=closed))
+
+
 def _region(ends: Sequence[Endpoint]) -> DegreeBox:
     """Return a box [deg] with all shoals that a voyage may meet."""
     lat = np.array([end.lat for end in ends], float)
