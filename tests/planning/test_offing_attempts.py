@@ -79,7 +79,7 @@ def test_shoals_open_everywhere_where_the_way_ends_between(world):
 
 
 def test_named_areas_of_exact_outline_open_last(world):
-    tries, notes = attempts(world, [COLOMBO, CHITTAGONG], *9 * [(14.0, 86.0)])
+    tries, notes = attempts(world, [COLOMBO, CHITTAGONG], *10 * [(14.0, 86.0)])
     radii = [one["Colombo"][0] for one in tries]
     assert radii[:2] == [8.0, 0.0] and radii[-1] == np.inf
     assert set(radii[1:-1]) == {0.0}  # nearer and nearer to land

@@ -185,9 +185,9 @@ def test_shoals_are_closed_and_open_again_where_no_other_way_exists():
                               needs, None, None)  # fmt: skip
     found = plan_off_land(context, ENDS, 2.0 * NAUTICAL_MILE, run)
     assert tries == [
-        (True, 2.0, 2.0, 0.0), (False, 2.0, 2.0, 0.0),
-        (False, 2.0, 0.5, 15.0), (False, 2.0, 0.5, 40.0), (False, 2.0, 0.0, 15.0),
-        (False, 1.0, 1.0, 0.0),
+        (True, 2.0, 2.0, 0.0), (True, 2.0, 2.0, 0.0),
+        (True, 2.0, 0.5, 15.0), (True, 2.0, 0.5, 40.0), (True, 2.0, 0.0, 15.0),
+        (True, 1.0, 1.0, 0.0),
     ]  # fmt: skip
     assert not any(note.startswith("Closed:") for note in found.needs.notes)
 
