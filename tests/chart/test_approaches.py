@@ -137,7 +137,7 @@ GATES = [
     ("Wellington", -41.35, 174.83, 1.0),
     ("Aqaba", 28.0, 34.46, 1.5),  # Strait of Tiran
     ("Elat", 28.0, 34.46, 1.5),
-    ("Saint Petersburg", 59.93, 30.15, 1.5),
+    ("Saint Petersburg", 59.923, 29.993, 0.5),
 ]
 
 

@@ -184,11 +184,11 @@ def test_narrows_that_no_ship_passes_are_closed(world):
 
 
 def test_passages_have_limits_and_uses():
-    oresund, chacao, menai = find_passages(["oresund", "Chacao", "Menai Strait"])
+    oresund, raftsund, menai = find_passages(["oresund", "Raftsund", "Menai Strait"])
     assert oresund.ship_restriction(draught=7.5, length=200.0) == ""
     assert "draught of 9.5 m" in oresund.ship_restriction(draught=9.5, length=200.0)
-    assert "below 120 m" in chacao.ship_restriction(length=180.0)
-    assert chacao.ship_restriction(length=80.0) == ""
+    assert "below 120 m" in raftsund.ship_restriction(length=180.0)
+    assert raftsund.ship_restriction(length=80.0) == ""
     assert "closed to ships" in menai.ship_restriction(length=10.0)
     assert oresund.limits == "draught 7.7 m"
     assert len({passage.name for passage in PASSAGES}) == len(PASSAGES) >= 121
