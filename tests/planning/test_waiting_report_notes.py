@@ -18,6 +18,8 @@ from thalweg.planning.report.waiting_report import (
 )
 from thalweg.route import Track
 
+BEGIN = 1767225600.0  # 2026-01-01 [s since 1970]
+
 
 def with_current_of(eastward_kn):
     """Return a route of a ship of 10 kn eastwards, with a current over 0.1 degree."""
@@ -72,20 +74,24 @@ def test_departures_of_a_window_are_listed():
     assert window_notes(departures[:1], (0.0, 0.0)) == window_notes([], (0.0, 0.0)) == []
 
 
-def test_a_wait_for_an_unknown_current_is_no_wait_for_a_tide():
-    begin = 1767225600.0
-    sea = Sea.from_functions(
+def sea_with_currents_from_two_hours_on():
+    """Return a sea of 0.2 m/s eastwards whose current is unknown before 02:00."""
+    return Sea.from_functions(
         {
             "eastward_sea_water_velocity": lambda t, y, x: np.where(
-                t < begin + 7200.0, np.nan, 0.0
+                t < BEGIN + 7200.0, np.nan, 0.2
             ),
             "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
         }
     )
-    track = Track([0.0, 0.0, 0.0], [-5.0, -4.98, -4.9], begin, wait=[0.0, 9000.0, 0.0])
+
+
+def test_a_wait_for_an_unknown_current_is_no_wait_for_a_tide():
+    track = Track([0.0, 0.0, 0.0], [-5.0, -4.98, -4.9], BEGIN, wait=[0.0, 9000.0, 0.0])
+    sea = sea_with_currents_from_two_hours_on()
     route = evaluate(track, ship=Ship.simple(speed_kn=10.0), sea=sea, strict=False)
-    times = np.linspace(begin + 600.0, begin + 9600.0, 31)
-    current = np.where(times < begin + 7200.0, np.nan, 0.0)
+    times = np.linspace(BEGIN + 600.0, BEGIN + 9600.0, 31)
+    current = np.where(times < BEGIN + 7200.0, np.nan, 0.0)
     samples = {"leg": np.ones(31, int), "time": times, "eastward_sea_water_velocity": current}
     (note,) = unknown_current_warnings(replace(route, wait_samples=samples))
     assert note.startswith("Waits at sea at 0.0000N 4.9800W since the data have no current there")
@@ -97,15 +103,7 @@ def test_a_wait_for_an_unknown_current_is_no_wait_for_a_tide():
 
 def test_a_plan_that_cannot_leave_for_want_of_data_says_so():
     """The current is known from 02:00 on: the wait before is no wait for a tide."""
-    begin = 1767225600.0
-    sea = Sea.from_functions(
-        {
-            "eastward_sea_water_velocity": lambda t, y, x: np.where(
-                t < begin + 7200.0, np.nan, 0.2
-            ),
-            "northward_sea_water_velocity": lambda t, y, x: 0.0 * t,
-        }
-    )
+    sea = sea_with_currents_from_two_hours_on()
     voyage = Voyage(start=(0, -5), goal=(0, -4.5), depart="2026-01-01")
     answer = plan(voyage, ship=Ship.simple(speed_kn=10.0), sea=sea)
     (note,) = (one for one in answer.notes if one.startswith(WAITS_TO_LEAVE))
