@@ -7,6 +7,7 @@ import numba
 from thalweg.kernels.compilation.checked_code_cache import CheckedFunctionCache
 from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 from thalweg.kernels.compilation.kernel_libraries import entry_compiler
+from thalweg.kernels.compilation.whole_compilation import compiled_whole
 
 
 def jit(function=None, **options):
@@ -15,6 +16,7 @@ def jit(function=None, **options):
         return lambda given: jit(given, **options)
     usual = {"error_model": "numpy", "nogil": True, "pipeline_class": entry_compiler()}
     kernel = numba.njit(**{**usual, **options})(function)
+    kernel.compile = compiled_whole(kernel.compile)
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(COMPILED_FOLDER)
     try:

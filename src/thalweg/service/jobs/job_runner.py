@@ -278,6 +278,8 @@ class JobRunner:
         elif child.stopped_why is not None:
             self._store.finish(job.id, "failed", problem=problem_of(child.stopped_why))
         elif child.stop_asked is not None:
+            if end is not None and end["state"] == "failed":  # a fault while it stopped
+                self._keep_log(job, child)
             first = self._workspaces / job.id / FIRST_FOLDER
             if (first / FIRST_SUMMARY).exists():  # of this start, or of an earlier one
                 summary = json.loads((first / FIRST_SUMMARY).read_text("utf-8"))
