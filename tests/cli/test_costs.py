@@ -78,7 +78,7 @@ def test_prices_of_the_command_count_whatever_is_minimised(capsys, track):
         assert route["cost_usd"] == pytest.approx(expected, rel=1e-9)
         parts = route["cost_parts"]
         assert parts["fuel"] == pytest.approx(1200.0 * route["fuel_t"], rel=1e-9)
-        assert parts.pop("EU charges") is None
+        assert parts.pop("EU ETS") is None and parts.pop("FuelEU") is None
         assert sum(parts.values()) == pytest.approx(route["cost_usd"], rel=1e-12)
 
 
@@ -141,7 +141,7 @@ def test_charges_of_the_european_union_are_a_part_of_the_cost(capsys, track):
     words = ("--ets-price", "80", "--eu-share", "100", "--eu-year", "2024")
     _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, *words)
     expected = 0.4 * 80.0 * scored["co2_t"]
-    assert scored["cost_parts"]["EU charges"] == pytest.approx(expected, rel=1e-9)
+    assert scored["cost_parts"]["EU ETS"] == pytest.approx(expected, rel=1e-9)
     code, refusal = run_json(capsys, "evaluate", track, *SHIP, *DEPART, "--ets-price", "80")
     assert code == 2 and "share of the voyage" in json.dumps(refusal)
 
@@ -229,7 +229,7 @@ def test_charges_without_prices_are_unknown_and_not_zero(capsys, track):
     _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART)
     for route in (plan["routes"][0], scored):
         parts = route["cost_parts"]
-        assert parts.pop("EU charges") is None
+        assert parts.pop("EU ETS") is None and parts.pop("FuelEU") is None
         assert sum(parts.values()) == pytest.approx(route["cost_usd"], rel=1e-9)
         reasons = route["prices"]["european_charges"]["not_counted"]
         assert [text.partition(":")[0] for text in reasons] == [
@@ -237,7 +237,7 @@ def test_charges_without_prices_are_unknown_and_not_zero(capsys, track):
         ]  # fmt: skip
     charges = ("--eu-share", "50", "--ets-price", "80")
     _, scored = run_json(capsys, "evaluate", track, *SHIP, *DEPART, *charges)
-    assert scored["cost_parts"]["EU charges"] > 0.0
+    assert scored["cost_parts"]["EU ETS"] > 0.0 and scored["cost_parts"]["FuelEU"] is None
     assert len(scored["prices"]["european_charges"]["not_counted"]) == 1
 
 
@@ -289,7 +289,7 @@ def test_the_european_rules_are_those_of_the_year_of_departure(capsys, track, de
     if share is None:
         assert scored["cost_parts"] == later["cost_parts"]
     else:  # methane and nitrous oxide count from 2026 on
-        part = scored["cost_parts"]["EU charges"] / later["cost_parts"]["EU charges"]
+        part = scored["cost_parts"]["EU ETS"] / later["cost_parts"]["EU ETS"]
         assert share * 0.97 < part < share
 
 

@@ -282,6 +282,17 @@ def test_a_crossing_is_stated_the_same_after_rounding(off, against):
     assert any("Runs against" in note for note in lane_notes(chart, route)) == against
 
 
+def test_a_route_that_meets_no_scheme_has_a_note_that_others_are_not_known():
+    chart = SimpleNamespace(zones=Zones(lanes=FINISTERRE.lanes))
+    lon, lat = FINISTERRE.shifted(-(FINISTERRE.zone + 0.25 * FINISTERRE.lane))[::-1].T
+
+    def stated(east):
+        route = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon + east))
+        return any(note.startswith("Meets none of the") for note in lane_notes(chart, route))
+
+    assert stated(3.0) and not stated(0.0)
+
+
 def test_voyages_to_brest_use_the_inshore_zone_off_ushant():
     """The Chenal du Four leads through it; a ship of 26 m from Falmouth went 24 nm round it."""
     ushant = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Off Ushant")

@@ -55,12 +55,17 @@ def test_charges_are_a_part_of_the_cost_by_the_share_of_the_voyage():
         charges = EuropeanCharges(share, allowance_price=80.0, year=2025)
         route = evaluate(AT_SEA, ship=BULKER.with_charges(charges), sea=Sea.calm(), depart=0)
         expected = share * 0.7 * 80.0 * plain.co2_t
-        assert route.cost_parts["EU charges"] == pytest.approx(expected, rel=1e-9)
+        assert route.cost_parts["EU ETS"] == pytest.approx(expected, rel=1e-9)
+        assert route.cost_parts["FuelEU"] is None  # without a price of the euro
         assert route.cost == pytest.approx(plain.cost + expected, rel=1e-9)
         assert route.prices["european_charges"]["allowance_price"] == 80.0
-    both = BULKER.with_charges(EuropeanCharges(1.0, euro_price=1.1, year=2025))
+    both = BULKER.with_charges(EuropeanCharges(1.0, 80.0, euro_price=1.1, year=2025))
     route = evaluate(AT_SEA, ship=both, sea=Sea.calm(), depart=0)
-    assert route.cost_parts["EU charges"] == pytest.approx(1.1 * 62.2 * plain.fuel_t, rel=1e-3)
+    parts = route.cost_parts
+    assert parts["FuelEU"] == pytest.approx(1.1 * 62.2 * plain.fuel_t, rel=1e-3)
+    assert parts["EU ETS"] == pytest.approx(0.7 * 80.0 * plain.co2_t, rel=1e-9)
+    assert parts["fuel"] == pytest.approx(plain.cost, rel=1e-9)
+    assert sum(parts.values()) == pytest.approx(route.cost, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +89,7 @@ def test_ships_below_5000_gross_tons_pay_none(tonnage, share, words):
     ).with_charges(EuropeanCharges(1.0, 80.0, year=2026))
     route = evaluate(AT_SEA, ship=boat, sea=Sea.calm(), depart=0)
     expected = share * 80.0 * route.co2_t
-    assert route.cost_parts["EU charges"] == pytest.approx(expected, rel=0.02, abs=1e-9)
+    assert route.cost_parts["EU ETS"] == pytest.approx(expected, rel=0.02, abs=1e-9)
     notes = [text for text in route.assumptions if "European Union" in text]
     assert (words is None and not notes) or words in notes[0]
 

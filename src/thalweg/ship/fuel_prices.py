@@ -26,7 +26,7 @@ from thalweg.ship.methods.engine.fuel_properties import (
 )
 from thalweg.ship.schema.ship_schema import CostsSection, ShipFile
 
-FUEL_QUANTITIES: Final = ("fuel", "cost", "co2", "charges")
+FUEL_QUANTITIES: Final = ("fuel", "cost", "co2", "allowances", "penalty")
 FACTOR_OF_SHIP_FILE: Final = "price of the request, factor of the ship file"
 FACTOR_OF_REQUEST: Final = "price of the ship file, factor of the request"
 _GRAMS: Final = 1000.0  #: in a kilogram
@@ -139,9 +139,9 @@ class FuelTerms:
 
         Parameters
         ----------
-        what : {"fuel", "cost", "co2", "charges"}
-            Mass burnt [kg], money [``currency``], CO2 [kg], or the part of the money that is
-            charges of the European Union.
+        what : {"fuel", "cost", "co2", "allowances", "penalty"}
+            Mass burnt [kg], money [``currency``], CO2 [kg], or the part of the money for emission
+            allowances or the FuelEU penalty.
         inside : Inside an emission control area or outside.
 
         Returns
@@ -152,13 +152,13 @@ class FuelTerms:
 
         Raises
         ------
-        InputError : If ``what`` is not one of the four.
+        InputError : If ``what`` is not one of the five.
         """
         if what not in FUEL_QUANTITIES:
             raise unknown_name_error("sum of fuel", str(what), FUEL_QUANTITIES)
         mass = self.relative_mass_inside if inside else 1.0
-        if what == "charges":
-            return mass * self._charge_per_kg(inside)
+        if what in ("allowances", "penalty"):
+            return mass * self._charge_per_kg(inside, what)
         if what == "cost":
             price = self.price_inside if inside else self.price_outside
             return mass * (price + self._charge_per_kg(inside))
@@ -167,13 +167,13 @@ class FuelTerms:
             return float(co2_mass(mass, carbon_factor=factor))
         return mass
 
-    def _charge_per_kg(self, inside: bool) -> float:
+    def _charge_per_kg(self, inside: bool, part: str = "") -> float:
         """Return the charges of the European Union on a kilogram of fuel; NaN when unknown."""
         if self.charges is None:
             return 0.0
         fuel = self.inside if inside else self.outside
         carbon = self.carbon_inside if inside else self.carbon_outside
-        return self.charges.per_kg("" if fuel is None else fuel.name, carbon)
+        return self.charges.per_kg("" if fuel is None else fuel.name, carbon, part)
 
     def with_charges(self, charges: EuropeanCharges | None) -> FuelTerms:
         """Return the terms with charges of the European Union on fuel.
@@ -200,7 +200,7 @@ class FuelTerms:
 
         Parameters
         ----------
-        what : {"fuel", "cost", "co2", "charges"}
+        what : {"fuel", "cost", "co2", "allowances", "penalty"}
         fuel_mass : Fuel m of the ship's model [kg], as if the fuel outside were burnt everywhere.
         share_inside : Share s inside a control area, 0 to 1.
 

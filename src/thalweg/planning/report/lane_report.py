@@ -34,7 +34,7 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
 
     Returns
     -------
-    list of str : Empty where the route meets none, and for charts with lanes of their own.
+    list of str : Where the route meets none that is so; empty for charts with lanes of their own.
     """
     if not _has_schemes(chart):
         return []
@@ -59,6 +59,11 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
         for name, metres in inshore.items()
         if metres > _LEAST
     ]
+    if not (along or against or inshore):
+        notes.append(
+            f"Meets none of the {len(TRAFFIC_SCHEMES)} traffic separation schemes of the package; "
+            "others are not known here: look for them in the chart."
+        )
     return notes + [
         f"{AGAINST_TRAFFIC} of {name}, or within a quarter of a lane of its separation zone, for "
         f"about {metres / NAUTICAL_MILE:.0f} nm, by an approximate separation line: check the "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from thalweg.route.referee.sailing_physics import SailingEnvironment
     from thalweg.ship.fuel_prices import FuelTerms
 
+#: Quantities of `FuelTerms` that are charges of the European Union, by the names of cost parts.
+_CHARGES: Final = {"EU ETS": "allowances", "FuelEU": "penalty"}
 OUTSIDE_ZONES = "outside"  #: outside all emission control areas, among the zones of `CostBreakdown`
 
 
@@ -100,18 +102,27 @@ def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerm
         spent = terms.cubed_speed_price * _cubed_speed_time(sailed, parts, time)
     else:
         spent = _weighted_fuel(parts, terms, "cost")[0]
-    charges = None
-    if terms.charges is not None:
-        charges = parts.price * _weighted_fuel(parts, terms, "charges")[0]
-    cost = total(parts.price * spent - (0.0 if charges is None else charges))
+    charges = {
+        name: parts.price * _weighted_fuel(parts, terms, quantity)[0]
+        for name, quantity in _charges_with_a_price(terms).items()
+    }
+    cost = total(parts.price * spent - sum(charges.values(), np.zeros(len(spent))))
     fee, notes = _canal_dues(sailed, terms, cost)
     of_parts = {"fuel": cost, "time": terms.time_price * total(time), "canal dues": fee}
-    if charges is not None:  # without their prices they are unknown and no part of the cost
-        of_parts["EU charges"] = total(charges)
+    of_parts |= {name: total(values) for name, values in charges.items()}
     legs["cost"] = sum(of_parts.values(), np.zeros(count))
-    unknown = {"EU charges": np.full(count, math.nan)}
+    unknown = dict.fromkeys(_CHARGES, np.full(count, math.nan))  # without prices: not zero
     legs |= {COST_PARTS[name]: values for name, values in (unknown | of_parts).items()}
     return CostBreakdown(legs, _fuel_by_zone(sailed, parts, mass, kept), notes)
+
+
+def _charges_with_a_price(terms: FuelTerms) -> dict[str, str]:
+    """Return the quantities of charges that have a price, by the names of the parts."""
+    given = terms.charges
+    if given is None:
+        return {}
+    prices = given.allowance_price, given.euro_price
+    return {name: what for (name, what), price in zip(_CHARGES.items(), prices) if price > 0.0}
 
 
 def _emitted_co2(

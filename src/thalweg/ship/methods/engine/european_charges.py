@@ -187,7 +187,7 @@ class EuropeanCharges:
         why = f"0 % for a ship of {gross_tonnage:,.0f} GT; they apply from 5,000 GT on"
         return replace(self, voyage_share=0.0, share_source=why)
 
-    def per_kg(self, fuel_name: str, co2: float) -> float:
+    def per_kg(self, fuel_name: str, co2: float, part: str = "") -> float:
         """Return the charge of a kilogram of fuel.
 
         Parameters
@@ -196,6 +196,8 @@ class EuropeanCharges:
             Short name of the fuel (`thalweg.ship.methods.engine.fuel_properties.FUELS`).
         co2 : float
             Its CO2 [kg/kg].
+        part : {"", "allowances", "penalty"}
+            Both charges, or one of them.
 
         Returns
         -------
@@ -206,10 +208,10 @@ class EuropeanCharges:
         if self.voyage_share == 0.0:
             return 0.0
         charge = 0.0
-        if self.allowance_price > 0.0:
+        if self.allowance_price > 0.0 and part != "penalty":
             gases = co2 + other_greenhouse_gases(fuel_name, self.year)
             charge += self.allowance_price * ets_phase_in(self.year) * gases / TONNE
-        if self.euro_price > 0.0:
+        if self.euro_price > 0.0 and part != "allowances":
             known = WELL_TO_WAKE.get(fuel_name)
             if known is None:
                 return math.nan
