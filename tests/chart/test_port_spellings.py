@@ -2,9 +2,11 @@
 
 import pytest
 
+from thalweg.chart.approaches import PORT_APPROACHES
 from thalweg.chart.port_names import loose_port_names, normalised_port_name
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
+from thalweg.core.units import NAUTICAL_MILE
 
 
 @pytest.mark.parametrize(
@@ -22,6 +24,29 @@ from thalweg.core.errors import InputError
 def test_one_port_is_found_by_other_spellings(text, locode):
     assert PORTS.lookup(text).locode == locode
     assert PORTS.find(text).locode == locode
+
+
+@pytest.mark.parametrize(
+    ("text", "position"),
+    [
+        ("Vizag", (17.69, 83.28)),
+        ("JNPT", (18.95, 72.95)),
+        ("Beilun", (29.94, 121.89)),
+        ("Dalrymple Bay", (-21.26, 149.30)),
+        ("Deltaport", (49.02, -123.16)),
+        ("Ponta da Madeira", (-2.56, -44.38)),
+        ("Porto do Acu", (-21.83, -40.98)),
+        ("Caofeidian", (38.92, 118.50)),
+        ("Matola", (-25.97, 32.50)),
+        ("Koror", (7.34, 134.48)),
+        ("Kharg Island", (29.23, 50.33)),
+        ("Stade", (53.64, 9.50)),
+    ],
+)
+def test_names_that_planners_use_lead_to_the_berths(text, position):
+    port = PORTS.lookup(text)
+    assert (port.lat, port.lon) == pytest.approx(position, abs=0.1)
+    assert PORT_APPROACHES.of(port).length < 60.0 * NAUTICAL_MILE
 
 
 @pytest.mark.parametrize(

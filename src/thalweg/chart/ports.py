@@ -147,8 +147,10 @@ class Ports:
             for field in others.split(";"):
                 for name in written_names(field):
                     yield name, port, False
+        keyed = {f"{port.name}, {port.country_code}": port for port in self.all}
+        keyed |= self._by_locode
         for row in _table("port_aliases.csv"):
-            yield row["name"], self._by_locode[row["unlocode"]], True
+            yield row["name"], keyed[row["port"]], True
 
     def lookup(self, text: str) -> Port:
         """Return the port of a name or UN/LOCODE.
