@@ -62,7 +62,7 @@ GATES = [
     ("Lisbon", 38.66, -9.30, 1.5),  # mouth of the Tagus
     ("Sevilla", 36.80, -6.34, 0.7),  # Bonanza
     ("Brest", 48.34, -4.57, 1.0),  # Goulet
-    ("Venice", 45.43, 12.40, 2.0),  # Lido
+    ("Venice", 45.335, 12.31, 1.0),  # Malamocco
     ("Izmir", 38.42, 26.95, 1.5),  # Yenikale
     ("Istanbul", 41.01, 28.98, 1.5),  # southern end of the Bosporus
     ("Oslo", 59.67, 10.60, 1.0),  # Drøbak
@@ -119,7 +119,7 @@ GATES = [
     ("Ho Chi Minh City", 10.32, 107.03, 0.7),  # Ganh Rai Bay
     ("Haiphong", 20.795, 106.915, 1.0),  # Lach Huyen
     ("Chiwan", 22.471, 113.876, 0.5),
-    ("Hong Kong", 22.28, 114.16, 2.5),  # Victoria Harbour
+    ("Hong Kong", 22.29, 114.104, 0.5),  # west of Green Island
     ("Guangzhou", 22.80, 113.62, 1.5),  # Bocca Tigris
     ("Shanghai", 31.40, 121.51, 0.7),  # Wusong
     ("Nantong", 31.39, 121.56, 1.0),
