@@ -91,7 +91,7 @@ def test_the_excess_is_the_mean_along_the_leg_in_both_directions():
     excess = np.interp(depth, [6.0, 12.0, 20.0], [19.0, 0.5, 0.0])
     excess[np.isnan(depth)] = 0.0
     found = SHOALS.excess(lat1, lon1, lat2, lon2)
-    assert np.abs(found - excess.mean(axis=0)).mean() < 0.03
+    assert np.abs(found - excess.mean(axis=0)).mean() < 0.04  # named areas count as well
     assert found == pytest.approx(SHOALS.excess(lat2, lon2, lat1, lon1), abs=1e-9)
 
 

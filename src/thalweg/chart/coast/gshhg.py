@@ -57,6 +57,9 @@ CLOSED_NARROWS: Final[dict[str, tuple[tuple[float, float], ...]]] = {
     "Hong Kong link": ((22.2830, 113.7850), (22.2830, 113.8480), (22.2930, 113.8950)),
     "Zhuhai link east": ((22.2820, 113.7225), (22.2807, 113.6800)),
     "Zhuhai link west": ((22.2790, 113.6680), (22.2620, 113.6350), (22.2150, 113.5550)),
+    # approach spans of the Great Belt East Bridge, on both sides of its main span
+    "Great Belt East Bridge west": ((55.3325, 10.9680), (55.3400, 11.0160)),
+    "Great Belt East Bridge east": ((55.3435, 11.0560), (55.3470, 11.1050)),
 }
 _DAM_HALF_WIDTH: Final = 0.0005  # [deg]
 

@@ -16,6 +16,8 @@ from thalweg.planning.seaways import Seaways
 
 NarrowWay: TypeAlias = Passage | Canal
 PASSAGE_CLOSED: Final = "Passage closed"  #: a note on a passage that is closed begins so
+#: ... and so, where the route itself leads through it
+CLOSED_ON_ROUTE: Final = f"{PASSAGE_CLOSED}: the route leads through"
 PASSAGES_CLOSED: Final = "Passages closed"  #: ... or so, where it is on several
 
 

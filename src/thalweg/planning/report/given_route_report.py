@@ -18,7 +18,7 @@ from thalweg.planning.report.approach_report import (
     most_miles_over_land,
     over_land_note,
 )
-from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
+from thalweg.planning.report.closed_way_report import CLOSED_ON_ROUTE
 from thalweg.planning.report.land_report import time_of_passing
 from thalweg.planning.report.lane_report import lane_notes
 from thalweg.planning.request.lane_choice import chart_with_schemes
@@ -75,7 +75,7 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     notes += [over_land_note("a port", miles)] if miles >= LAND_OF_LINES_BY_HAND else []
     for passage in passages_used(chart, route):
         why = size_restriction(passage, ship)
-        notes += [f"{PASSAGE_CLOSED}: the route leads through {why}."] if why else []
+        notes += [f"{CLOSED_ON_ROUTE} {why}."] if why else []
     if not chart.zones.lanes:
         places = [(float(lat[k]), float(lon[k])) for k in _sea_ends(route)]
         chart = chart_with_schemes(chart, ship, places)

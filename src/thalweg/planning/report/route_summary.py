@@ -20,7 +20,7 @@ from thalweg.planning.report.approach_report import (
     OVER_LAND,
     PORT_TOO_SHALLOW,
 )
-from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED
+from thalweg.planning.report.closed_way_report import CLOSED_ON_ROUTE
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
 from thalweg.planning.report.filled_weather import wave_shares
 from thalweg.planning.report.lane_report import AGAINST_TRAFFIC
@@ -55,7 +55,7 @@ _SEE_NOTES: Final = {  # first words of notes on what the referee does not check
     LOW_BRIDGE: "the size of the ship in a port or passage",
     PORT_TOO_SHALLOW: "the size of the ship in a port or passage",
     APPROACH_TOO_SMALL: "the size of the ship in a port or passage",
-    PASSAGE_CLOSED: "the size of the ship in a port or passage",
+    CLOSED_ON_ROUTE: "the size of the ship in a port or passage",
 }
 _SOURCES: Final = {  # other sources of prices by their own name
     "request": "given",
