@@ -50,6 +50,30 @@ def test_names_that_planners_use_lead_to_the_berths(text, position):
 
 
 @pytest.mark.parametrize(
+    ("text", "locode"),
+    [
+        ("Houston, TX", "USHOU"),
+        ("Houston, Texas", "USHOU"),
+        ("Portland, ME", "USPWM"),
+        ("Portland, OR", "USPDX"),
+        ("Vancouver, BC", "CAVAN"),
+        ("Vancouver, WA", "USVAN"),
+        ("Savannah, GA", "USSAV"),  # GA is also Gabon
+        ("Bar, ME", "MEBAR"),  # Montenegro, not Maine
+        ("Fremantle, WA", "AUFRE"),
+        ("Newcastle, NSW", "AUNTL"),
+    ],
+)
+def test_a_state_or_province_stands_in_place_of_the_country(text, locode):
+    assert PORTS.lookup(text).locode == locode
+
+
+def test_a_port_in_another_state_is_refused():
+    with pytest.raises(InputError, match="no port named 'Savannah' in 'TX'"):
+        PORTS.lookup("Savannah, TX")
+
+
+@pytest.mark.parametrize(
     "text", ["Rotterdam Airport", "Rotterdamski", "Petropavlovsk-Kamchatskiy, JP", "Kamchatskiy"]
 )
 def test_other_words_are_no_spellings(text):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import csv
+import functools
 import re
 import unicodedata
-from typing import Final
+from importlib import resources
+from typing import Final, Protocol
 
 from thalweg.core.errors import InputError
 
@@ -117,4 +120,35 @@ def decimal_commas_error(text: str) -> InputError | None:
         "Degrees have decimal points; a comma stands between latitude and longitude.",
         f"Give {text.strip().replace(',', '.').replace(';', ' ')!r}.",
         value=text,
+    )
+
+
+@functools.cache
+def _states() -> tuple[dict[str, str], ...]:
+    """The rows of ``data/states.csv``: states and provinces, each with a box round its ports."""
+    text = resources.files("thalweg.chart").joinpath("data/states.csv").read_text("utf-8")
+    return tuple(csv.DictReader(text.splitlines()))
+
+
+class _Located(Protocol):
+    @property
+    def country_code(self) -> str: ...
+    @property
+    def lat(self) -> float: ...
+    @property
+    def lon(self) -> float: ...
+
+
+def is_in_state(place: str, port: _Located) -> bool:
+    """Return whether a port is in a state or province, by its code ("TX") or name.
+
+    Those of Australia, Canada and the United States are known, by boxes round their ports.
+    """
+    name = normalised_port_name(place)
+    return any(
+        row["country_code"] == port.country_code
+        and name in (row["code"].lower(), normalised_port_name(row["name"]))
+        and float(row["south"]) <= port.lat <= float(row["north"])
+        and float(row["west"]) <= port.lon <= float(row["east"])
+        for row in _states()
     )

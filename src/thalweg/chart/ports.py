@@ -18,6 +18,7 @@ from typing import Final
 
 from thalweg.chart.port_names import (
     decimal_commas_error,
+    is_in_state,
     loose_port_names,
     normalised_port_name,
     place_name,
@@ -155,14 +156,15 @@ class Ports:
     def lookup(self, text: str) -> Port:
         """Return the port of a name or UN/LOCODE.
 
-        Names are "Rotterdam", "Rotterdam, NL", "Rotterdam, Netherlands" or, with a region of the
-        World Port Index, "Sydney, Cape Breton Island". Case and accents do not matter, but a
-        UN/LOCODE in small letters that is also a name is taken as a name. Of several ports of one
-        name the answer is the one that is clearly larger than all others (by `CLEARLY_LARGER`);
-        without a country or region, ports that can be reached from the sea come before all others.
-        A former or local name of the World Port Index counts only where no port has it as its own
-        name; if it belongs to a clearly larger port, the name is ambiguous. A name that no port
-        has is compared by its loose form (`loose_port_names`) where that is one port's alone.
+        Names are "Rotterdam", "Rotterdam, NL", "Rotterdam, Netherlands", "Portland, ME" or, with a
+        region of the World Port Index, "Sydney, Cape Breton Island". Case and accents do not
+        matter, but a UN/LOCODE in small letters that is also a name is taken as a name. Of several
+        ports of one name the answer is the one that is clearly larger than all others (by
+        `CLEARLY_LARGER`); without a country or region, ports that can be reached from the sea come
+        before all others. A former or local name of the World Port Index counts only where no port
+        has it as its own name; if it belongs to a clearly larger port, the name is ambiguous. A
+        name that no port has is compared by its loose form (`loose_port_names`) where that is one
+        port's alone.
 
         Raises
         ------
@@ -195,6 +197,7 @@ class Ports:
             name, _, place = text.rpartition(",")
             named = self._with_name(name)
             found = {port: own for port, own in named.items() if port.is_in(place)}
+            found = found or {p: own for p, own in named.items() if is_in_state(place, p)}
         return found
 
     def _with_name(self, name: str) -> dict[Port, bool]:
