@@ -278,3 +278,19 @@ def test_a_limit_is_kept_in_a_file_that_exceeds_it_by_its_rounding(tmp_path, hei
     write_csv(evaluate(track, ship=ship, sea=sea, strict=False), path)
     assert evaluate(path, ship=ship, sea=sea).feasible is kept
     assert not evaluate(track, ship=ship, sea=sea).feasible
+
+
+def test_each_part_of_a_long_leg_has_its_own_distance_from_land():
+    """The least distance of the whole leg stood at every waypoint of it, 50 nm off as well."""
+    chart = Chart.gshhg("c")
+    given = {"ship": Ship.load("handysize-bulker"), "sea": Sea.calm(), "chart": chart}
+    route = evaluate([(43.40, -8.60), (44.5, -30.0)], **given, depart=0)
+    rows = file_route(route, RouteFileOptions(chart=chart, spacing_nm=30.0)).rows[:-1]
+    assert len(rows) > 20
+    whole = {name: values[0] / NAUTICAL_MILE for name, values in route.legs.items()}
+    nearest = [row["land_distance_nm"] for row in rows]
+    assert nearest[0] == pytest.approx(whole["land_distance"], abs=0.02)
+    assert nearest == sorted(nearest) and nearest[6:] == [12.0] * (len(rows) - 6)
+    inshore = [row["inshore_nm"] for row in rows]
+    assert sum(inshore) == pytest.approx(whole["inshore_length"], abs=0.01)
+    assert inshore[0] > 2.0 and inshore[2:] == [0.0] * (len(rows) - 2)

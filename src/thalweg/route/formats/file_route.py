@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
-from thalweg.core.geodesy import inverse
+from thalweg.core.geodesy import densify, inverse
 from thalweg.core.rhumb_lines import inverse_rhumb
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.carried_extensions import Visit, visits_of
@@ -25,10 +25,18 @@ from thalweg.route.formats.parsed_track import (
 from thalweg.route.formats.route_file_options import RouteFileOptions
 from thalweg.route.formats.sample_places import SamplePlaces, time_integral
 from thalweg.route.formats.waypoint_names import waypoint_names
-from thalweg.route.indicator_columns import GREATEST_ON_LEGS, LEAST_ON_LEGS
+from thalweg.route.indicator_columns import (
+    GREATEST_ON_LEGS,
+    INSHORE_DISTANCE,
+    LAND_DISTANCE_CAP,
+    LEAST_ON_LEGS,
+)
 from thalweg.route.route import Route
 from thalweg.route.route_tables import LEG_KINDS, waypoint_rows
 from thalweg.route.track import Track
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
 
 #: Results of legs that are not sums over their parts.
 _NO_SUMS = (
@@ -36,6 +44,7 @@ _NO_SUMS = (
 )  # fmt: skip
 #: Decimals of columns that have not three.
 _DECIMALS = {"waiting_h": 6, "ordered_speed_kn": 6}
+_LAND_STEP = 463.0  # between the places at which the distance from land is looked up [m]
 _DIRECTIONS = ("course", "heading", "leg")  # not interpolated
 
 
@@ -82,6 +91,8 @@ def file_route(route: Route, options: RouteFileOptions | None = None) -> FileRou
 def _cut_at_waypoints(route: Route, options: RouteFileOptions) -> FileRoute:
     vertices = file_vertices(route, options)
     cut = _cut(route, vertices)
+    if options.chart is not None and "land_distance" in cut.legs:
+        cut = replace(cut, legs=_with_land_of_parts(cut.legs, route, vertices, options.chart))
     rows = waypoint_rows(cut)
     lat, lon = vertices.lat, vertices.lon
     ends = lat[:-1], lon[:-1], lat[1:], lon[1:]
@@ -170,6 +181,34 @@ def _cut(route: Route, vertices: FileVertices) -> _CutRoute:
         until = cumulative_sums(values)[leg]
         legs[name] = np.diff(until + np.where(share == 0.0, 0.0, values[leg] * share))
     return _CutRoute(cut_track, legs, samples, route.cost_name, route.engine_order)
+
+
+def _with_land_of_parts(
+    legs: Mapping[str, FloatArray], route: Route, vertices: FileVertices, chart: Chart
+) -> dict[str, FloatArray]:
+    """Return the legs with the distance from land of each part of a leg that is cut.
+
+    The whole leg has the least one of its parts. What is sailed inshore is that of the whole,
+    spread over the parts that are inshore.
+    """
+    parent = vertices.leg[:-1]
+    is_part = legs["length"] < route.legs["length"][parent] - 1.0
+    lat, lon, part = densify(vertices.lat, vertices.lon, _LAND_STEP)
+    shore = np.asarray(chart.coastline.shore_distance(lat, lon, cap=LAND_DISTANCE_CAP))
+    nearest = np.minimum(np.minimum(shore[1:], shore[:-1]), LAND_DISTANCE_CAP)
+    least = np.full(len(parent), LAND_DISTANCE_CAP)
+    np.minimum.at(least, part, nearest)
+    inshore = np.bincount(part, nearest < INSHORE_DISTANCE, len(parent)) * is_part
+    of_leg = np.bincount(parent, inshore)[parent]
+    found = dict(legs)
+    found["land_distance"] = np.where(
+        is_part, np.maximum(least, legs["land_distance"]), legs["land_distance"]
+    )
+    for name in ("inshore_length", "inshore_time"):
+        whole = np.bincount(parent, legs[name] * is_part)[parent]
+        spread = whole * inshore / np.maximum(of_leg, 1)
+        found[name] = np.where(is_part & (of_leg > 0), spread, legs[name])
+    return found
 
 
 def _extremes(values: FloatArray, first: IntArray, last: IntArray, extreme: np.ufunc) -> FloatArray:
