@@ -181,7 +181,8 @@ def test_the_table_of_other_ways_names_canals_in_full(capsys):
             "canal_dues_usd": 0.0,
         },
     ]
-    print_passage_alternatives(Console(width=100), SimpleNamespace(passage_alternatives=ways))
+    print_passage_alternatives(Console(width=40), SimpleNamespace(passage_alternatives=ways))
     text = capsys.readouterr().out
     assert text.count("Panama Canal") == 2 and "panama" not in text
+    assert "838.8 h, canal dues 0 USD: without Panama Canal, by Magellan." in text
     assert "thalweg alternatives" in text

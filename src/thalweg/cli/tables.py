@@ -122,16 +122,15 @@ def print_passage_alternatives(console: Any, plan: Plan) -> None:
     from thalweg.chart.canals import CANALS
 
     titles = {canal.name: canal.title for canal in CANALS}
-    columns = ("without", "nm", "h", "canal dues USD", "by")
-    title = "Other ways, by distance in calm water at the speed of the plan"
-    table = new_table(title, columns, left=("without", "by"), wrap="by")
+    console.print("Other ways, by distance in calm water at the speed of the plan:")
     for row in plan.passage_alternatives:
-        table.add_row(
-            "; ".join(titles.get(name, name) for name in row["without"]) or "-",
-            f"{row['distance_nm']:,.0f}", f"{row['time_h']:,.1f}", f"{row['canal_dues_usd']:,.0f}",
-            "; ".join(titles.get(name, name) for name in row["passes"]),
-        )  # fmt: skip
-    console.print(table)
+        without, by = ("; ".join(titles.get(n, n) for n in row[k]) for k in ("without", "passes"))
+        text = (
+            f"  {row['distance_nm']:,.0f} nm, {row['time_h']:,.1f} h, canal dues "
+            f"{row['canal_dues_usd']:,.0f} USD: {f'without {without}' if without else 'this plan'}"
+            f"{f', by {by}' if by else ''}."
+        )
+        console.print(text, soft_wrap=True, markup=False)  # whole names on narrow terminals
     console.print("'thalweg alternatives' plans such ways, with their fuel and cost.")
 
 
