@@ -179,7 +179,7 @@ def test_a_speed_between_the_settings_is_sailed_by_the_law_of_the_ship():
 
 
 def test_a_place_on_land_near_water_names_the_water_and_the_nearest_port():
-    with pytest.raises(InputError, match="nearest port is Durban, ZA, 14") as caught:
+    with pytest.raises(InputError, match="nearest port is Durban, ZA, 12") as caught:
         resolve_endpoint((-29.8, 30.8), Chart.gshhg("i"), "start")
     assert "open sea at 29.8" in str(caught.value)
     assert "swapped" not in str(caught.value)

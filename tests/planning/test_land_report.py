@@ -65,7 +65,7 @@ def test_passages_of_the_way_that_a_draught_closes_share_a_note(world):
     assert note == (
         "Passages closed: Malacca: One Fathom Bank, Malacca-Singapore west, Singapore Main Strait "
         "and Horsburgh (Middle Channel): the draught of 20.8 m is over the 20.5 m allowed (--open "
-        "NAME opens one). The way through is about 1,172 nm shorter."
+        "NAME opens one). The way through is about 1,171 nm shorter."
     )
     assert count_of_dangers([note]) == 1
 
