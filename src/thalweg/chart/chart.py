@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.chart import canals as canal_data
-from thalweg.chart import chart_tests, geojson_polygons
+from thalweg.chart import chart_queries, geojson_polygons
 from thalweg.chart.approaches import PORT_APPROACHES, PortApproaches
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.coast.coast_index_builder import empty_index
 from thalweg.chart.coast.coastline import Coastline
-from thalweg.chart.coast.leg_tests import leg_status
+from thalweg.chart.coast.leg_status import leg_status
 from thalweg.chart.depth.depth_grids import make_depth_layer
 from thalweg.chart.depth.depth_layers import DepthLayers
 from thalweg.chart.offing import (
@@ -37,7 +37,7 @@ from thalweg.core.time import TimeLike
 from thalweg.deprecated_names import renamed_attributes
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays
-from thalweg.kernels.geometry.offing_tests import OffingArrays
+from thalweg.kernels.geometry.offing_along_legs import OffingArrays
 
 NO_ZONES: Final = Zones()
 NO_DEPTHS: Final = DepthLayers()
@@ -379,19 +379,19 @@ class Chart:
         """Whether the chart has any layer of depth."""
         return bool(self.depths.layers)
 
-    canal_of_legs = delegated(chart_tests.chart_canal_of_legs)
-    crosses_no_go_zone = delegated(chart_tests.chart_crosses_no_go_zone)
-    is_joined_to_sea = delegated(chart_tests.chart_is_joined_to_sea)
-    is_navigable = delegated(chart_tests.chart_is_navigable)
-    leg_status = delegated(chart_tests.chart_leg_status)
-    legs_blocked = delegated(chart_tests.chart_legs_blocked)
+    canal_of_legs = delegated(chart_queries.chart_canal_of_legs)
+    crosses_no_go_zone = delegated(chart_queries.chart_crosses_no_go_zone)
+    is_joined_to_sea = delegated(chart_queries.chart_is_joined_to_sea)
+    is_navigable = delegated(chart_queries.chart_is_navigable)
+    leg_status = delegated(chart_queries.chart_leg_status)
+    legs_blocked = delegated(chart_queries.chart_legs_blocked)
     with_offing = delegated(chart_with_offing)
     with_traffic = delegated(chart_with_traffic)
     without_passages = delegated(chart_without_passages)
-    may_wait = delegated(chart_tests.chart_may_wait)
-    sea_room = delegated(chart_tests.chart_sea_room)
-    nearest_navigable = delegated(chart_tests.chart_nearest_navigable)
-    fingerprint = delegated(chart_tests.chart_fingerprint)
+    may_wait = delegated(chart_queries.chart_may_wait)
+    sea_room = delegated(chart_queries.chart_sea_room)
+    nearest_navigable = delegated(chart_queries.chart_nearest_navigable)
+    fingerprint = delegated(chart_queries.chart_fingerprint)
 
 
 def _is_blocked(canal: Canal, coast: CoastArrays) -> bool:

@@ -28,7 +28,7 @@ from thalweg.core.geodesy import (
 from thalweg.core.geodesy import distance as geodesic
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.kernels.geometry.offing_tests import NO_OFFING, OffingArrays, required_distances
+from thalweg.kernels.geometry.offing_along_legs import NO_OFFING, OffingArrays, required_distances
 
 ChartType = TypeVar("ChartType", bound=Any)
 
@@ -164,7 +164,7 @@ def offing_arrays(
     passages: Sequence[Passage],
     closed: Sequence[Passage] = (),
 ) -> OffingArrays:
-    """Return an offing as arrays for `thalweg.kernels.geometry.offing_tests`.
+    """Return an offing as arrays for `thalweg.kernels.geometry.offing_along_legs`.
 
     Parameters
     ----------

@@ -177,7 +177,8 @@ def _add_passage_options(group: Any) -> None:
         "--offing",
         type=float,
         metavar="NM",
-        help="least distance from land [nm] outside named passages and near the ends; 0: none; "
+        help="least distance from land [nm] outside named passages and near the ends; 0: none, "
+        "and passages too small for the ship stay open; "
         "default: by the size of the ship (0.5, 1 or 2)",
     )
     group.add_argument(

@@ -45,9 +45,9 @@ def compile_search() -> None:
 def compile_certificate() -> None:
     """Bound a passage in open water, to compile the kernels."""
     from thalweg.sea import Sea
+    from thalweg.search.certificate.barrier_check_cost import USUAL_SECONDS_A_CELL
     from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
     from thalweg.search.certificate.barrier_mesh import ShipInBarrier
-    from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL
     from thalweg.search.certificate.time_certificate import BarrierSearch
     from thalweg.ship import Ship
 

@@ -27,7 +27,7 @@ import numpy as np
 from thalweg.core.ellipsoid import AXIS_RATIO_SQUARED, FLATTENING
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OFFING, OK
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
-from thalweg.kernels.geometry.arc_edge_tests import arc_frame, edges_of_cell_touched
+from thalweg.kernels.geometry.arc_edges import arc_frame, edges_of_cell_touched
 from thalweg.kernels.geometry.cube_sphere import (
     DEGREE,
     FIRST_ROW,
@@ -39,7 +39,7 @@ from thalweg.kernels.geometry.cube_sphere import (
     unit_vector,
 )
 from thalweg.kernels.geometry.geodesic_arc import geodesic_point
-from thalweg.kernels.geometry.offing_tests import (
+from thalweg.kernels.geometry.offing_along_legs import (
     KEPT,
     NO_OFFING,
     TOO_NEAR,

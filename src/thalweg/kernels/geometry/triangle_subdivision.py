@@ -6,7 +6,7 @@ import numpy as np
 
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.compilation.jit import jit
-from thalweg.kernels.geometry.arc_edge_tests import arc_frame, edges_of_cell_touched
+from thalweg.kernels.geometry.arc_edges import arc_frame, edges_of_cell_touched
 from thalweg.kernels.geometry.coast_index import LONGEST_ARC, cell_exit
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,

@@ -1,6 +1,6 @@
 """The least distance of a track from charted land, and where it keeps less than the offing.
 
-Independent of the test of legs in `thalweg.kernels.geometry.offing_tests`: positions on the
+Independent of the test of legs in `thalweg.kernels.geometry.offing_along_legs`: positions on the
 geodesics are sampled ever more closely wherever land could be nearer than what was found so far.
 """
 

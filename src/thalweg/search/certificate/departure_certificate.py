@@ -8,8 +8,8 @@ import time as clock
 from dataclasses import dataclass, replace
 from typing import Final
 
+from thalweg.search.certificate.barrier_check_cost import seconds_a_cell
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
-from thalweg.search.certificate.check_timing import seconds_a_cell
 from thalweg.search.certificate.time_certificate import (
     BarrierSearch,
     TimeCertificate,

@@ -14,7 +14,7 @@ from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import geocentric_unit_vectors, inverse, longitude_difference
 from thalweg.core.types import FloatArray
 from thalweg.kernels.geometry.coast_index import CoastArrays
-from thalweg.kernels.geometry.offing_tests import NO_OFFING
+from thalweg.kernels.geometry.offing_along_legs import NO_OFFING
 from thalweg.search.certificate.barrier_mesh import BarrierLink
 from thalweg.search.certificate.positions_in_reach import Reach
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.coast.leg_tests import point_status
+from thalweg.chart.coast.leg_status import point_status
 from thalweg.core.geodesy import densify, distance, unit_vectors
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels.codes import OK

@@ -20,6 +20,7 @@ from thalweg.search.certificate.arrival_barrier import (
     find_barrier,
     finer_factors,
 )
+from thalweg.search.certificate.barrier_check_cost import USUAL_SECONDS_A_CELL, seconds_a_cell
 from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
 from thalweg.search.certificate.barrier_mesh import (
     BarrierLink,
@@ -28,7 +29,6 @@ from thalweg.search.certificate.barrier_mesh import (
     slope_direction,
 )
 from thalweg.search.certificate.barrier_raster import is_calm, is_uniform
-from thalweg.search.certificate.check_timing import USUAL_SECONDS_A_CELL, seconds_a_cell
 from thalweg.search.certificate.length_round_land import length_round_land
 from thalweg.search.search_problem import ROUNDING_FACTOR
 

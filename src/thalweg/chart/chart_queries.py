@@ -14,7 +14,7 @@ from thalweg.chart.approaches import PortApproaches
 from thalweg.chart.canals import Canal
 from thalweg.chart.coast.coast_index_builder import empty_index
 from thalweg.chart.coast.coastline import Coastline
-from thalweg.chart.coast.leg_tests import leg_status, point_status
+from thalweg.chart.coast.leg_status import leg_status, point_status
 from thalweg.chart.coast.snapping import is_joined_to_sea, nearest_navigable
 from thalweg.chart.depth.depth_layers import DepthLayers
 from thalweg.chart.offing import Offing, sea_room
@@ -25,7 +25,7 @@ from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LAND, OFFING, OK
 from thalweg.kernels.geometry.coast_index import CoastArrays
-from thalweg.kernels.geometry.offing_tests import OffingArrays
+from thalweg.kernels.geometry.offing_along_legs import OffingArrays
 
 _OPEN_SEA: Final = 10_000.0  # water this far from land is open sea without a test [m]
 
