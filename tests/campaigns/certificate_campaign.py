@@ -202,14 +202,14 @@ def certified(world: World, sea: Sea, chart: Chart | None, known: float) -> list
     part = TablePart((), (), np.array([world.speed], np.float32))
     table = PerformanceTable((part,), np.array([world.speed]), "", TableError(0.0, 0.0, 0.0))
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, float(np.float32(world.speed)))
-    passage = StretchToBound(
+    stretch = StretchToBound(
         sea, chart, ship, (codes.CURRENT_EAST, codes.CURRENT_NORTH), tuple(world.start),
         tuple(world.goal), _DEPART, 1.01 * known,
     )  # fmt: skip
-    domain = BarrierDomain.around(passage, 1)
+    domain = BarrierDomain.around(stretch, 1)
     assert domain is not None and domain.sampling == "", domain
-    cells = passage.length / domain.cell_height
-    searches = [BarrierSearch(passage, domain, math.floor(n * cells), 3e-4) for n in (2, 3, 5)]
+    cells = stretch.length / domain.cell_height
+    searches = [BarrierSearch(stretch, domain, math.floor(n * cells), 3e-4) for n in (2, 3, 5)]
     found = [searches[k].refine() for k in (0, 0, 1, 1, 2)]
     for number, one in zip(DIVISIONS, found):
         assert one is None or one.mesh is None or one.mesh.world.refinement == number

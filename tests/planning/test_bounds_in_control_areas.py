@@ -98,8 +98,8 @@ def test_the_priced_length_counts_dearer_metres_and_the_way_round_them(zone, tru
     ship = ShipInBarrier(table.kernel_arrays(), 0, Limits().array, 1.0)
     chart = Chart.open_water(-0.5, 0.5, -0.5, 2.5).with_zones(zone)
     known = truth * 0.5 * LENGTH
-    passage = StretchToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
-    found = certify_priced_length(passage, 1.5, seconds=30.0, target=0.02)
+    stretch = StretchToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
+    found = certify_priced_length(stretch, 1.5, seconds=30.0, target=0.02)
     assert 0.98 * known <= found.value <= known
 
 

@@ -81,16 +81,16 @@ def bounds_of(sea, start, goal, known) -> tuple[FloatArray, float]:
     )
     ship = ShipInBarrier(table.kernel_arrays(), 2, Limits().array, float(SPEEDS[-1]))
     channels = (CURRENT_EAST, CURRENT_NORTH)
-    passage = StretchToBound(sea, None, ship, channels, start, goal, depart=T0, known=known)
-    domain = BarrierDomain.around(passage, 100)
+    stretch = StretchToBound(sea, None, ship, channels, start, goal, depart=T0, known=known)
+    domain = BarrierDomain.around(stretch, 100)
     assert domain is not None
     rows, columns = (axis.size - 1 for axis in domain.axes)
     everywhere = [np.ones((rows, columns), bool)]
     fastest = float(SPEEDS[-1]) + domain.strongest_current
     costs, shares = [], []
-    for height in heights_along(passage, domain):
+    for height in heights_along(stretch, domain):
         steepest, currents = strongest_fair_currents(
-            passage, domain, fastest, height, everywhere, np.array([known])
+            stretch, domain, fastest, height, everywhere, np.array([known])
         )
         costs.append(least_costs(currents, steepest * SPEEDS, [COSTS], height.rise)[0])
         reached = greatest_rise(currents, steepest * float(SPEEDS[-1]))[0]
@@ -199,9 +199,9 @@ def test_the_bound_of_a_cost_is_the_least_of_its_front_at_all_times():
 def test_currents_in_reach_are_read_once_for_a_front(monkeypatch):
     passages, around = [], BarrierDomain.around
 
-    def counted(passage, cells, **more):
-        passages.append((tuple(passage.channels), passage.known, cells))
-        return around(passage, cells, **more)
+    def counted(stretch, cells, **more):
+        passages.append((tuple(stretch.channels), stretch.known, cells))
+        return around(stretch, cells, **more)
 
     monkeypatch.setattr(BarrierDomain, "around", counted)
     lat, lon = np.arange(-5, 6) * 0.1, np.arange(-3, 14) * 0.1

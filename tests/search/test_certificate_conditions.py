@@ -40,7 +40,7 @@ def box(west, south, east, north):
     return {"type": "Polygon", "coordinates": [ring]}
 
 
-def passage(known, *, chart=None, sea=None, ship=None, channels=()):
+def stretch(known, *, chart=None, sea=None, ship=None, channels=()):
     ship = ship or ship_of_one_speed(SPEED)
     return StretchToBound(sea or Sea.calm(), chart, ship, channels, *ENDS, depart=1e9, known=known)
 
@@ -83,10 +83,10 @@ def test_a_canal_through_a_wall_is_a_link_of_the_barrier():
     canal = Canal("cut", "The cut", ((10.0, 20.46), (10.0, 20.54)), transit_time=hours, fee=0.0)
     through = float(distance(10.0, 20.0, 10.0, 20.46) + distance(10.0, 20.54, 10.0, 21.0))
     best = through / SPEED + hours
-    with_canal = on_meshes(passage(1.003 * best, chart=replace(chart, canals=(canal,))), cells=60)
+    with_canal = on_meshes(stretch(1.003 * best, chart=replace(chart, canals=(canal,))), cells=60)
     assert len(with_canal.mesh.links) == 1
     assert 0.95 * best < with_canal.value <= best
-    without = on_meshes(passage(1.3 * best, chart=chart), cells=60)
+    without = on_meshes(stretch(1.3 * best, chart=chart), cells=60)
     assert without.value > 1.1 * best  # round the wall
 
 
@@ -98,7 +98,7 @@ def test_a_ship_whose_speed_is_a_field_is_bounded_by_the_field():
 
     ship = replace(ship_of_one_speed(5.0), top_speed=math.nan, speed_field=field)
     best = 0.5 * STRAIGHT + STRAIGHT
-    found = on_meshes(passage(1.003 * best, ship=ship), cells=60)
+    found = on_meshes(stretch(1.003 * best, ship=ship), cells=60)
     assert 0.93 * best < found.value <= best
     assert "linear between" in found.sampling
 
@@ -122,7 +122,7 @@ def test_in_a_tide_the_bound_holds_for_the_best_departure_of_a_window():
         lambda t, y, x: 0 * x,
         time_step=1800.0,
     )
-    asked = passage(1.003 * best, sea=sea, channels=CURRENTS)
+    asked = stretch(1.003 * best, sea=sea, channels=CURRENTS)
     found = certify_departures(replace(asked, latest=1e9 + window), seconds=60.0, target=0.06)
     assert best < 0.95 * worst
     assert 0.9 * best < found.value <= best + 40.0
@@ -130,7 +130,7 @@ def test_in_a_tide_the_bound_holds_for_the_best_departure_of_a_window():
 
 def test_the_bound_of_the_geodesic_takes_the_strongest_current_of_the_data():
     sea = sea_of(lambda t, y, x: 2.0 * np.exp(-((y - 10.2) ** 2) * 400.0), lambda t, y, x: 0 * x)
-    found = certify_time(passage(STRAIGHT, sea=sea, channels=CURRENTS), seconds=0.0)
+    found = certify_time(stretch(STRAIGHT, sea=sea, channels=CURRENTS), seconds=0.0)
     assert EAST in sea.variables and codes.CURRENT_EAST in CURRENTS
     assert found.cells == 0 and found.barrier is None
     assert 0.98 * STRAIGHT * 5.0 / 7.0 < found.value < 1.02 * STRAIGHT * 5.0 / 7.0
@@ -145,7 +145,7 @@ def test_the_limit_of_the_wind_is_one_over_the_ground():
     best = STRAIGHT * SPEED / (SPEED - 3.0)
     channels = (*CURRENTS, codes.WIND_EAST, codes.WIND_NORTH)
     limited = ship_of_one_speed(SPEED, Limits(wind_speed=15.0))
-    found = on_meshes(passage(1.05 * best, sea=sea, ship=limited, channels=channels), cells=60)
+    found = on_meshes(stretch(1.05 * best, sea=sea, ship=limited, channels=channels), cells=60)
     assert found.reached <= 1.001 * best
 
 
@@ -159,7 +159,7 @@ def test_water_of_functions_may_open_at_any_moment_between_samples(by_steps):
 
     sea = Sea.from_functions({"sea_floor_depth_below_geoid": depth}, time_step=1200.0)
     afloat = ship_of_one_speed(SPEED, Limits(required_depth=6.5))
-    where = passage(1.1 * STRAIGHT, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
+    where = stretch(1.1 * STRAIGHT, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
     domain = BarrierDomain.around(where, 24)
     mesh = build_mesh(domain.raster, 1, domain.ship, None, by_steps=by_steps)
     cells = mesh.lat.size - 1, mesh.lon.size - 1
@@ -185,7 +185,7 @@ def test_a_bar_across_the_whole_way_delays_the_bound_until_it_opens(step):
     sea = Sea.from_functions({"sea_floor_depth_below_geoid": depth}, time_step=step)
     afloat = ship_of_one_speed(SPEED, Limits(required_depth=6.5))
     best = opens + 0.53 * STRAIGHT
-    bar = passage(1.002 * best, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
+    bar = stretch(1.002 * best, sea=sea, ship=afloat, channels=(codes.BED_DEPTH,))
     found = on_meshes(bar, 100, 1)
     assert 0.98 * best < found.value <= best
 

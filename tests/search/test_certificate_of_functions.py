@@ -30,7 +30,7 @@ def jet(t, y, x):
     return JET * np.maximum(0.0, 1.0 - np.abs(y - START[0]) * DEGREE / WIDTH) + 0.0 * x
 
 
-def passage(lipschitz=None, known=LENGTH / (SPEED + JET), **more) -> StretchToBound:
+def stretch(lipschitz=None, known=LENGTH / (SPEED + JET), **more) -> StretchToBound:
     sea = Sea.from_functions(
         {EAST: jet, NORTH: lambda t, y, x: 0.0 * x}, time_step=0.0, lipschitz=lipschitz
     )
@@ -53,7 +53,7 @@ def test_a_jet_between_the_samples_is_in_the_bound_by_its_lipschitz_bound(cells)
     truth = LENGTH / (SPEED + JET)
     values = []
     for rates in (None, RATES):
-        where = passage(rates)
+        where = stretch(rates)
         domain = BarrierDomain.around(where, cells)
         free = free_space_time(where, domain)
         found = BarrierSearch(where, domain, cells, 3e-4).refine()
@@ -66,7 +66,7 @@ def test_a_jet_between_the_samples_is_in_the_bound_by_its_lipschitz_bound(cells)
 
 
 def test_margins_are_half_a_diagonal_and_half_a_step_times_the_rates():
-    where = passage(RATES)
+    where = stretch(RATES)
     domain = BarrierDomain.around(where, 60)
     _, dlat, _, dlon = domain.raster.corner
     half = 0.5 * 111_700.0 * math.hypot(dlat, dlon)
@@ -89,7 +89,7 @@ def test_without_bounds_of_all_functions_or_with_an_area_samples_are_what_is_sta
         sea = Sea.from_functions(
             {EAST: jet, NORTH: lambda t, y, x: 0.0 * x}, time_step=0.0, area=area, lipschitz=rates
         )
-        domain = BarrierDomain.around(replace(passage(), sea=sea), 40)
+        domain = BarrierDomain.around(replace(stretch(), sea=sea), 40)
         assert "Lipschitz" not in domain.sampling and "sampled" in domain.sampling
         assert not domain.margins.any()
 

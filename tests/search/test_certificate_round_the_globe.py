@@ -24,7 +24,7 @@ def wall(north: float) -> Chart:
     return Chart.open_water(-90.0, 90.0, -180.0, 180.0).with_zones(feature)
 
 
-def passage(chart: Chart, known: float) -> StretchToBound:
+def stretch(chart: Chart, known: float) -> StretchToBound:
     ship = ship_of_one_speed(1.0)
     return StretchToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
 
@@ -32,7 +32,7 @@ def passage(chart: Chart, known: float) -> StretchToBound:
 def test_the_way_round_a_wall_that_reaches_near_the_pole_is_the_bound():
     """The geodesic through the wall is less than half as long: 80 degrees of the equator."""
     best = 2.0 * float(distance(*START, 80.0, -8.0)) + float(distance(80.0, -8.0, 80.0, 8.0))
-    where = passage(wall(80.0), 1.002 * best)
+    where = stretch(wall(80.0), 1.002 * best)
     domain = BarrierDomain.around(where, 180)
     rows, columns = domain.raster.values.shape[1:3]
     assert columns > 1.9 * rows  # all round

@@ -36,8 +36,8 @@ def table(values):
 def cost_of(sea, known, *, chart=None, inside=1.0, channels=()):
     ship = ShipInBarrier(table(SPEEDS).kernel_arrays(), 2, Limits().array, float(SPEEDS.max()))
     priced = PricedShip(np.arange(3), table(FUEL).kernel_arrays(), FUEL, SPEEDS)
-    passage = StretchToBound(sea, chart, ship, channels, START, GOAL, depart=1e9, known=known)
-    return CostToBound(passage, priced, inside, 1.0, 0.0)
+    stretch = StretchToBound(sea, chart, ship, channels, START, GOAL, depart=1e9, known=known)
+    return CostToBound(stretch, priced, inside, 1.0, 0.0)
 
 
 def gyre(lat, lon):

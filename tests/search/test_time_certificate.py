@@ -42,29 +42,29 @@ def bound(
 ) -> TimeCertificate:
     ship = ship or ship_of_one_speed(SPEED)
     channels = CURRENTS if EAST in sea.variables else ()
-    passage = StretchToBound(
+    stretch = StretchToBound(
         sea, chart, ship, channels, *ends, depart=1e9, known=known, kept_out=kept_out
     )
-    return on_meshes(passage, cells, meshes)
+    return on_meshes(stretch, cells, meshes)
 
 
-def on_meshes(passage: StretchToBound, cells: int = 120, meshes: int = 1) -> TimeCertificate:
+def on_meshes(stretch: StretchToBound, cells: int = 120, meshes: int = 1) -> TimeCertificate:
     """Return the best bound of a number of meshes, whatever time they take."""
-    search = BarrierSearch(passage, BarrierDomain.around(passage, cells), cells, 3e-4)
+    search = BarrierSearch(stretch, BarrierDomain.around(stretch, cells), cells, 3e-4)
     found = [one for one in (search.refine() for _ in range(meshes)) if one is not None]
     return max(found, key=lambda one: one.value)
 
 
 def test_a_passage_counts_the_sea_until_the_last_departure_has_arrived():
     channels = (codes.BED_DEPTH, *CURRENTS)
-    passage = StretchToBound(
+    stretch = StretchToBound(
         Sea.calm(), None, ship_of_one_speed(SPEED), channels, START, GOAL, depart=100.0, known=30.0
     )
-    assert passage.period == (100.0, 130.0)
-    assert dataclasses.replace(passage, latest=150.0).period == (100.0, 180.0)
-    assert dataclasses.replace(passage, latest=50.0).period == (100.0, 130.0)
-    assert passage.currents == CURRENTS
-    assert dataclasses.replace(passage, channels=(codes.BED_DEPTH,)).currents == ()
+    assert stretch.period == (100.0, 130.0)
+    assert dataclasses.replace(stretch, latest=150.0).period == (100.0, 180.0)
+    assert dataclasses.replace(stretch, latest=50.0).period == (100.0, 130.0)
+    assert stretch.currents == CURRENTS
+    assert dataclasses.replace(stretch, channels=(codes.BED_DEPTH,)).currents == ()
 
 
 @pytest.mark.slow
@@ -96,12 +96,12 @@ def test_a_jet_beyond_the_ellipse_of_the_ships_speed_is_in_the_bound():
                  lambda t, y, x: 0 * x)  # fmt: skip
     straight = float(distance(*ends[0], *ends[1]))
     by_jet = 2.0 * float(distance(0.0, 0.0, edge, 0.0)) / speed + straight / (speed + jet)
-    passage = StretchToBound(
+    stretch = StretchToBound(
         sea, None, ship_of_one_speed(speed), CURRENTS, *ends, depart=1e9, known=straight / speed
     )
-    domain = BarrierDomain.around(passage, 100)
+    domain = BarrierDomain.around(stretch, 100)
     assert domain.fastest == pytest.approx(speed + jet)
-    assert time_certificate.certify_time(passage, seconds=1.0).value < by_jet < passage.known
+    assert time_certificate.certify_time(stretch, seconds=1.0).value < by_jet < stretch.known
 
 
 def passage_beside_a_jet_on_one_line() -> StretchToBound:
@@ -136,26 +136,26 @@ def passage_beside_a_jet_on_one_line() -> StretchToBound:
 def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypatch):
     """The jet is on one line of the data, which is read only in the water near the way."""
     monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
-    passage = passage_beside_a_jet_on_one_line()
-    domain = BarrierDomain.around(passage, 60)
+    stretch = passage_beside_a_jet_on_one_line()
+    domain = BarrierDomain.around(stretch, 60)
     assert domain.fastest >= 14.0 or "lines of the data" in domain.sampling
 
 
 def test_data_that_decide_on_the_cells_are_not_read_again_for_finer_ones(monkeypatch):
     monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
-    passage, frozen = passage_beside_a_jet_on_one_line(), []
+    stretch, frozen = passage_beside_a_jet_on_one_line(), []
 
     def count(request):
         frozen.append(request.cells)
         return barrier_raster.freeze_barrier_raster(request)
 
     monkeypatch.setattr(barrier_domain, "freeze_barrier_raster", count)
-    domain = BarrierDomain.around(passage, 60)
+    domain = BarrierDomain.around(stretch, 60)
     before = len(frozen)  # of the greatest speed, which is kept, and of the domain
-    found = time_certificate.certify_time(passage, seconds=0.0)
+    found = time_certificate.certify_time(stretch, seconds=0.0)
     assert len(frozen) - before == 1
     assert "lines of the data" in found.sampling
-    assert found.value == pytest.approx(passage.length / domain.fastest, rel=1e-6)
+    assert found.value == pytest.approx(stretch.length / domain.fastest, rel=1e-6)
 
 
 @pytest.mark.slow
@@ -204,13 +204,13 @@ def test_a_jet_beside_the_way_is_bounded_from_below():
         lambda t, y, x: 0 * x,
     )
     ship, known = ship_of_one_speed(SPEED), 9.9 * 3600.0
-    passage = StretchToBound(
+    stretch = StretchToBound(
         sea, None, ship, CURRENTS, (0.0, 0.0), (0.0, wide), depart=1e9, known=known
     )
-    raster = BarrierDomain.around(passage, 400).raster
+    raster = BarrierDomain.around(stretch, 400).raster
     lat = raster.corner[0] + raster.corner[1] * np.arange(raster.values.shape[1])
     best = least_time_by_jet(lat, raster.values[0, :, 0, raster.channel_index[0]], wide)
-    found = on_meshes(passage, 400)
+    found = on_meshes(stretch, 400)
     assert best < known
     assert 0.98 * best < found.value <= best
 
@@ -228,12 +228,12 @@ def test_a_jet_outside_of_what_slow_water_lets_a_ship_reach_is_bounded():
         time_step=0.0,
     )
     known = 9.7685 * 3600.0
-    passage = StretchToBound(
+    stretch = StretchToBound(
         sea, None, ship_of_one_speed(8.0 * 1852.0 / 3600.0), CURRENTS, (0.0, 0.0), (0.0, 2.0),
         depart=1e9, known=known,
     )  # fmt: skip
-    assert BarrierDomain.around(passage, 400).fastest > 7.0  # 4.12 m/s and nearly 3 m/s
-    found = time_certificate.certify_time(passage, seconds=2.0)
+    assert BarrierDomain.around(stretch, 400).fastest > 7.0  # 4.12 m/s and nearly 3 m/s
+    found = time_certificate.certify_time(stretch, seconds=2.0)
     assert 0.97 * known < found.value < known
     assert "minutes" not in found.sampling  # the sea never changes
 
@@ -281,7 +281,7 @@ def test_the_first_mesh_fits_into_the_time_for_it(monkeypatch, rate, most):
         sizes.append(max(search.domain.raster.values.shape[1:3]))
         search.expected_seconds = math.inf
 
-    monkeypatch.setattr(time_certificate, "seconds_a_cell", lambda passage, domain: rate)
+    monkeypatch.setattr(time_certificate, "seconds_a_cell", lambda stretch, domain: rate)
     monkeypatch.setattr(BarrierSearch, "refine", refine)
     ship = Ship.load("handysize-bulker").tabulate()
     top = float(ship.largest(0))
@@ -314,8 +314,8 @@ def test_no_ship_crosses_the_barrier_backwards_in_wind():
     length = float(distance(*ends[0], *ends[1]))
     names = {codes.WIND_EAST: "eastward_wind", codes.WIND_NORTH: "northward_wind"}
     barrier = ShipInBarrier(table.kernel_arrays(), setting, Limits().array, top)
-    passage = StretchToBound(sea, None, barrier, tuple(names), *ends, depart, 1.15 * length / top)
-    found = on_meshes(passage, cells=120)
+    stretch = StretchToBound(sea, None, barrier, tuple(names), *ends, depart, 1.15 * length / top)
+    found = on_meshes(stretch, cells=120)
     rate = _rates_at_random_points(found, ship=table, setting=setting, count=20_000)
     assert found.value > 0.99 * length / top
     assert np.nanmax(rate) <= 1.0 + 1e-6

@@ -25,7 +25,7 @@ def search_is_compiled() -> bool:
 
 
 def compile_search() -> None:
-    """Search and smooth a passage between two nodes in open water, to compile the kernels.
+    """Search and smooth a stretch between two nodes in open water, to compile the kernels.
 
     Another process compiles those of the certificate: a third of the whole, used last.
     """
@@ -43,7 +43,7 @@ def compile_search() -> None:
 
 
 def compile_certificate() -> None:
-    """Bound a passage in open water, to compile the kernels."""
+    """Bound a stretch in open water, to compile the kernels."""
     from thalweg.sea import Sea
     from thalweg.search.certificate.barrier_check_cost import USUAL_SECONDS_A_CELL
     from thalweg.search.certificate.barrier_domain import BarrierDomain, StretchToBound
@@ -57,10 +57,10 @@ def compile_certificate() -> None:
     length, _, _ = inverse(0.0, 0.0, 0.0, 1.0)
     waves = (codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL)
     known = 1.1 * float(length) / top
-    passage = StretchToBound(Sea.calm(), None, ship, waves, (0.0, 0.0), (0.0, 1.0), 0.0, known)
-    domain = BarrierDomain.around(passage, _CELLS)
-    assert domain is not None  # the passage is short
-    BarrierSearch(passage, domain, _CELLS, USUAL_SECONDS_A_CELL[1]).refine()
+    stretch = StretchToBound(Sea.calm(), None, ship, waves, (0.0, 0.0), (0.0, 1.0), 0.0, known)
+    domain = BarrierDomain.around(stretch, _CELLS)
+    assert domain is not None  # the stretch is short
+    BarrierSearch(stretch, domain, _CELLS, USUAL_SECONDS_A_CELL[1]).refine()
 
 
 def _search_and_smooth() -> None:

@@ -1,4 +1,4 @@
-"""The certified lower bound of one passage."""
+"""The certified lower bound of one stretch."""
 
 from __future__ import annotations
 
@@ -97,14 +97,14 @@ def certified_bound(
         return no_bound(_NOT_SAILED)
     context.report_progress("proving a lower bound")
     by_length = context.voyage.objective == "distance"
-    passage = _still_water(context, route) if by_length else _passage(context, route)
+    stretch = _still_water(context, route) if by_length else _stretch(context, route)
     if not by_length:
-        passage = replace(passage, depart=departures[0], latest=departures[1])
-    found = certify_departures(passage, seconds=seconds)
+        stretch = replace(stretch, depart=departures[0], latest=departures[1])
+    found = certify_departures(stretch, seconds=seconds)
     margin = 1.0 if by_length or not context.table.axes else 1.0 - TABLE_MARGIN
-    if found.reached * margin > passage.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
-        return no_bound(_contradicted(found, passage.known, by_length=by_length))
-    return LowerBound(min(found.value * margin, passage.known), _kind(context, route, found))
+    if found.reached * margin > stretch.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
+        return no_bound(_contradicted(found, stretch.known, by_length=by_length))
+    return LowerBound(min(found.value * margin, stretch.known), _kind(context, route, found))
 
 
 def usual_proof_time(chart: Chart, routes: Sequence[Route], searched: float) -> float:
@@ -143,11 +143,11 @@ def path_through_data(
     simple = not context.table.axes and context.ship.speed_field is None
     if not (currents and simple and route.feasible) or context.voyage.objective == "distance":
         return None
-    passage, spacing = _passage(context, route), context.choice.spacing
+    stretch, spacing = _stretch(context, route), context.choice.spacing
     cells = _CELLS_OF_PATH
     if spacing is not None:
-        cells = min(cells, round(_CELLS_OF_SPACING * passage.length / spacing))
-    return fast_path_on_raster(passage, max(cells, _FEWEST_CELLS_OF_PATH))
+        cells = min(cells, round(_CELLS_OF_SPACING * stretch.length / spacing))
+    return fast_path_on_raster(stretch, max(cells, _FEWEST_CELLS_OF_PATH))
 
 
 def certified_distance(
@@ -175,15 +175,15 @@ def certified_distance(
         replace(canal, transit_time=canal.length + longer.get(canal.name, 0.0))
         for canal in context.chart.canals
     )
-    passage = replace(
+    stretch = replace(
         _still_water(context, routes[0]),
         chart=replace(context.chart, canals=canals),
         known=min(priced_length(route, context.chart, price, longer) for route in routes),
         kept_out=kept_out(context.chart, routes),
     )
     if price == 1.0:
-        return LowerBound(certify_time(passage, seconds=seconds).value, "")
-    found = certify_priced_length(passage, price, seconds=seconds)
+        return LowerBound(certify_time(stretch, seconds=seconds).value, "")
+    found = certify_priced_length(stretch, price, seconds=seconds)
     return no_bound("") if found is None else LowerBound(found.value, "")
 
 
@@ -270,11 +270,11 @@ class CurrentsInReach:
 
     Attributes
     ----------
-    passage : Of the route, with currents as all there is in the sea.
+    stretch : Of the route, with currents as all there is in the sea.
     domain : None near a pole and across half of the globe.
     """
 
-    passage: StretchToBound
+    stretch: StretchToBound
     domain: BarrierDomain | None
 
     def strongest(self) -> tuple[float, str]:
@@ -282,7 +282,7 @@ class CurrentsInReach:
 
         The text is empty where the data themselves were read.
         """
-        domain = self.domain or BarrierDomain.of_globe(self.passage, _CELLS_FOR_CURRENT)
+        domain = self.domain or BarrierDomain.of_globe(self.stretch, _CELLS_FOR_CURRENT)
         return domain.strongest_current, domain.sampling
 
 
@@ -294,11 +294,11 @@ def currents_in_reach(context: PlanningContext, route: Route) -> CurrentsInReach
     route : A route that takes as long as any that counts: water farther away than its time at the
         greatest speed is left out.
     """
-    passage = _passage(context, route)
-    if len(passage.currents) < 2:
+    stretch = _stretch(context, route)
+    if len(stretch.currents) < 2:
         return None
-    passage = replace(passage, channels=passage.currents)
-    return CurrentsInReach(passage, BarrierDomain.around(passage, _CELLS_FOR_CURRENT))
+    stretch = replace(stretch, channels=stretch.currents)
+    return CurrentsInReach(stretch, BarrierDomain.around(stretch, _CELLS_FOR_CURRENT))
 
 
 def _contradicted(found: TimeCertificate, known: float, *, by_length: bool) -> str:
@@ -346,7 +346,7 @@ def _latitudes(context: PlanningContext, route: Route) -> str:
     return f", {IN_WATER}{named}" if named and area.width >= 360.0 else ""
 
 
-def _passage(context: PlanningContext, route: Route) -> StretchToBound:
+def _stretch(context: PlanningContext, route: Route) -> StretchToBound:
     top = greatest_speed_of(context.ship, context.table, context.setting)
     field = context.ship.speed_field
     if field is not None:

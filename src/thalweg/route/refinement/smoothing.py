@@ -229,8 +229,8 @@ def _refine_by_levels(line: Polyline, evaluator: PolylineEvaluator, finest: int)
     """Refine a line level by level."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
-    bound = _may_be_constrained(line, evaluator)
-    line = _refined(line, evaluator, bound)
+    constrained = _may_be_constrained(line, evaluator)
+    line = _refined(line, evaluator, constrained)
     while longest > total / finest and (idle < 2 or longest > total / 16.0):
         before = _elapsed_cost(line, evaluator)
         finer = line.split(longest)
@@ -241,7 +241,7 @@ def _refine_by_levels(line: Polyline, evaluator: PolylineEvaluator, finest: int)
             gained = before - _elapsed_cost(finer, evaluator)
             idle = idle + 1 if gained < _LEVEL_GAIN_TOLERANCE * before else 0
         longest *= 0.5
-    if bound:
+    if constrained:
         line = cut_corners(_refined(line, evaluator, True), evaluator)
     return line
 
@@ -266,10 +266,10 @@ def _with_finer_turns(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
     return line
 
 
-def _refined(line: Polyline, evaluator: PolylineEvaluator, bound: bool) -> Polyline:
+def _refined(line: Polyline, evaluator: PolylineEvaluator, constrained: bool) -> Polyline:
     """Move the waypoints by Newton's method, and by compass search where obstacles may bind."""
     moved = optimise_line_offsets(line, evaluator)
-    if not bound:
+    if not constrained:
         return moved
     smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
     return optimise_line_offsets(

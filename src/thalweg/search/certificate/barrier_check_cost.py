@@ -23,7 +23,7 @@ _MOST_CELLS: Final = 400_000  # of a mesh on which cells are timed
 _CHECKS: Final = 1.2  # first checks of cells in a mesh, for each of its cells in the band or not
 
 
-def seconds_a_cell(passage: StretchToBound, domain: BarrierDomain) -> float:
+def seconds_a_cell(stretch: StretchToBound, domain: BarrierDomain) -> float:
     """Return an estimate of the time of a first mesh for each of its cells [s].
 
     Parameters
@@ -35,21 +35,21 @@ def seconds_a_cell(passage: StretchToBound, domain: BarrierDomain) -> float:
     -------
     float : No less than without tables of weather.
     """
-    weather = axes_needed(passage.ship.table) != 0
+    weather = axes_needed(stretch.ship.table) != 0
     usual = USUAL_SECONDS_A_CELL[weather]
     _, rows, columns, _ = domain.raster.values.shape
     if not weather or domain.ship.speed_field is not None or rows * columns > _MOST_CELLS:
         return usual
     mesh = build_mesh(
         domain.raster, 1, domain.ship, None,
-        departures=passage.departures, by_steps=bool(domain.sampling), margins=domain.margins,
+        departures=stretch.departures, by_steps=bool(domain.sampling), margins=domain.margins,
     )  # fmt: skip
-    from_start = mesh.least_times(*passage.start, domain.fastest)
-    to_goal = mesh.least_times(*passage.goal, domain.fastest)
-    band = np.flatnonzero(from_start + to_goal < passage.known)
+    from_start = mesh.least_times(*stretch.start, domain.fastest)
+    to_goal = mesh.least_times(*stretch.goal, domain.fastest)
+    band = np.flatnonzero(from_start + to_goal < stretch.known)
     if band.size < 2 * _SAMPLE:
         return usual
-    windows = TimeWindows(from_start, np.maximum(passage.known - to_goal, from_start))
+    windows = TimeWindows(from_start, np.maximum(stretch.known - to_goal, from_start))
     chosen = band[:: band.size // _SAMPLE]
     used = 0.0
     for cells in (chosen[:_FIRST], chosen):

@@ -1,4 +1,4 @@
-"""Where the routes of a passage may lie that are faster than a known one, and the sea there."""
+"""Where the routes of a stretch may lie that are faster than a known one, and the sea there."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _GLOBE: Final = (-89.0, 89.0, -180.0, 180.0)  # south, north, west and east [deg
 
 @dataclass(frozen=True, eq=False)
 class StretchToBound:
-    """A passage whose time is bounded from below.
+    """A stretch whose time is bounded from below.
 
     Attributes
     ----------
@@ -122,9 +122,9 @@ class BarrierDomain:
 
     @classmethod
     def around(
-        cls, passage: StretchToBound, cells: int, *, fastest: float = 0.0
+        cls, stretch: StretchToBound, cells: int, *, fastest: float = 0.0
     ) -> BarrierDomain | None:
-        """Return the domain of a passage: round the globe where need be, in a uniform sea.
+        """Return the domain of a stretch: round the globe where need be, in a uniform sea.
 
         None near a pole and across half of the globe in other seas.
 
@@ -133,16 +133,16 @@ class BarrierDomain:
         cells : Cells of the raster along its longer side where the data are no finer.
         fastest : Speed over ground [m/s] that is known to be reached in the data.
         """
-        mean = passage.length / passage.known  # the known route is as fast somewhere
-        first = max(mean, passage.ship.top_speed if math.isfinite(passage.ship.top_speed) else 0.0)
-        first = max(first, fastest, passage.canal_speed(max(first, fastest)))
-        unsurpassed = _unsurpassed_speed(passage, min(cells, _CELLS_FOR_SPEED), first)
+        mean = stretch.length / stretch.known  # the known route is as fast somewhere
+        first = max(mean, stretch.ship.top_speed if math.isfinite(stretch.ship.top_speed) else 0.0)
+        first = max(first, fastest, stretch.canal_speed(max(first, fastest)))
+        unsurpassed = _unsurpassed_speed(stretch, min(cells, _CELLS_FOR_SPEED), first)
         if unsurpassed is None:
             return None
         (enough, sampling), found = unsurpassed, None
         for wanted in sorted({min(cells, _CELLS_FOR_SPEED), cells}):
             found = None  # its memory is free before the next is read
-            found = cls._within_reach(passage, wanted, enough, first)
+            found = cls._within_reach(stretch, wanted, enough, first)
             if found is None:
                 return None
             if not found.has_cells(wanted):
@@ -152,22 +152,22 @@ class BarrierDomain:
         return found if found is None or found.sampling else replace(found, sampling=sampling)
 
     @classmethod
-    def of_globe(cls, passage: StretchToBound, cells: int) -> BarrierDomain:
+    def of_globe(cls, stretch: StretchToBound, cells: int) -> BarrierDomain:
         """Return the domain of all seas, for the bound of the geodesic alone: it has no mesh.
 
         Parameters
         ----------
         cells : Cells of the raster along the equator where the data are no finer.
         """
-        ship, flows = passage.ship, passage.currents
-        frozen = _frozen(passage, flows, _GLOBE, cells)
-        top, speed = _greatest_speeds(passage, frozen)
+        ship, flows = stretch.ship, stretch.currents
+        frozen = _frozen(stretch, flows, _GLOBE, cells)
+        top, speed = _greatest_speeds(stretch, frozen)
         sampling = frozen.sampling if flows or ship.speed_field is not None else ""
         return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top), frozen.margins)
 
     @classmethod
     def _within_reach(
-        cls, passage: StretchToBound, cells: int, fastest: float, least: float
+        cls, stretch: StretchToBound, cells: int, fastest: float, least: float
     ) -> BarrierDomain | None:
         """Return the domain that a ship can reach by its greatest speed over ground in it.
 
@@ -177,15 +177,15 @@ class BarrierDomain:
             less in the whole domain, the domain of that speed is looked at in turn.
         least : Speed over ground [m/s] below which the domain is not made smaller.
         """
-        ship = passage.ship
+        ship = stretch.ship
         for attempt in range(_ATTEMPTS):
-            box = _box_of_routes(passage, fastest * _MARGIN)
-            if box is None and is_uniform(passage.sea):
-                box = _round_box(passage)
+            box = _box_of_routes(stretch, fastest * _MARGIN)
+            if box is None and is_uniform(stretch.sea):
+                box = _round_box(stretch)
             if box is None:
                 return None
-            frozen = _frozen(passage, passage.channels, box, cells)
-            top, speed = _greatest_speeds(passage, frozen)
+            frozen = _frozen(stretch, stretch.channels, box, cells)
+            top, speed = _greatest_speeds(stretch, frozen)
             # samples may miss what others have seen
             certain = not frozen.sampling or bool(frozen.margins.any())
             is_least = fastest <= max(speed, least) * _MARGIN or attempt >= _ATTEMPTS // 2
@@ -237,31 +237,31 @@ class BarrierDomain:
 
 
 def _frozen(
-    passage: StretchToBound,
+    stretch: StretchToBound,
     channels: Sequence[int],
     box: tuple[float, float, float, float],
     cells: int,
 ) -> BarrierRaster:
-    """Return the raster of some channels of the sea of a passage in a box."""
-    field = passage.ship.speed_field
-    request = RasterRequest(passage.sea, channels, box, passage.period, cells, field)
+    """Return the raster of some channels of the sea of a stretch in a box."""
+    field = stretch.ship.speed_field
+    request = RasterRequest(stretch.sea, channels, box, stretch.period, cells, field)
     return freeze_barrier_raster(request)
 
 
-def _greatest_speeds(passage: StretchToBound, frozen: BarrierRaster) -> tuple[float, float]:
+def _greatest_speeds(stretch: StretchToBound, frozen: BarrierRaster) -> tuple[float, float]:
     """Return the greatest speeds through water and over ground on a raster [m/s]."""
-    top = passage.ship.top_speed
-    if passage.ship.speed_field is not None:
+    top = stretch.ship.top_speed
+    if stretch.ship.speed_field is not None:
         top = greatest_value(frozen.arrays, SPEED_FIELD)
     speed = top + strongest_current_of_raster(frozen.arrays, frozen.margins)
-    return top, max(speed, passage.canal_speed(speed))
+    return top, max(speed, stretch.canal_speed(speed))
 
 
 @dataclass(frozen=True)
 class _FoundSpeed:
-    """A speed over ground that no route of a passage surpasses, and for which passage it is."""
+    """A speed over ground that no route of a stretch surpasses, and for which stretch it is."""
 
-    passage: tuple[object, ...]
+    stretch: tuple[object, ...]
     cells: int
     known: float
     speed: float
@@ -273,27 +273,27 @@ _FOUND_SPEEDS: WeakKeyDictionary[Sea, _FoundSpeed] = WeakKeyDictionary()
 
 
 def _unsurpassed_speed(
-    passage: StretchToBound, cells: int, fastest: float
+    stretch: StretchToBound, cells: int, fastest: float
 ) -> tuple[float, str] | None:
-    """Return what `_speed_within_half` finds, once for a passage and all shorter known times."""
-    ship, chart = passage.ship, passage.chart
+    """Return what `_speed_within_half` finds, once for a stretch and all shorter known times."""
+    ship, chart = stretch.ship, stretch.chart
     water = None if chart is None else (tuple(chart.area.array()), tuple(chart.canals))
     key = (
-        passage.start, passage.goal, passage.depart, passage.departures, water, ship.top_speed,
-        ship.speed_field, passage.currents,
+        stretch.start, stretch.goal, stretch.depart, stretch.departures, water, ship.top_speed,
+        ship.speed_field, stretch.currents,
     )  # fmt: skip
-    last = _FOUND_SPEEDS.get(passage.sea)
-    holds = last is not None and last.passage == key and last.known >= passage.known
+    last = _FOUND_SPEEDS.get(stretch.sea)
+    holds = last is not None and last.stretch == key and last.known >= stretch.known
     if last is not None and holds and last.cells >= cells:
         return max(last.speed, fastest), last.sampling
-    found = _speed_within_half(passage, cells, fastest)
+    found = _speed_within_half(stretch, cells, fastest)
     if found is not None:
-        _FOUND_SPEEDS[passage.sea] = _FoundSpeed(key, cells, passage.known, *found)
+        _FOUND_SPEEDS[stretch.sea] = _FoundSpeed(key, cells, stretch.known, *found)
     return found
 
 
 def _speed_within_half(
-    passage: StretchToBound, cells: int, fastest: float
+    stretch: StretchToBound, cells: int, fastest: float
 ) -> tuple[float, str] | None:
     """Return a speed over ground [m/s] that no route surpasses, and how the sea was sampled for it.
 
@@ -309,64 +309,64 @@ def _speed_within_half(
     cells : Cells of the raster along the longer side of that box where the data are no finer.
     fastest : Speed over ground [m/s] from which it is sought upwards.
     """
-    if is_uniform(passage.sea) or not (passage.currents or passage.ship.speed_field):
+    if is_uniform(stretch.sea) or not (stretch.currents or stretch.ship.speed_field):
         return fastest, ""
     for _ in range(_ATTEMPTS):
-        box = _box_of_halves(passage, fastest * _MARGIN_OF_HALVES)
-        inner = _box_of_routes(passage, fastest)
+        box = _box_of_halves(stretch, fastest * _MARGIN_OF_HALVES)
+        inner = _box_of_routes(stretch, fastest)
         if inner is None:
             return None
         larger = max(box[1] - box[0], box[3] - box[2]) / max(
             inner[1] - inner[0], inner[3] - inner[2]
         )
-        frozen = _frozen(passage, passage.currents, box, math.ceil(cells * larger))
-        speed = _greatest_speeds(passage, frozen)[1]
+        frozen = _frozen(stretch, stretch.currents, box, math.ceil(cells * larger))
+        speed = _greatest_speeds(stretch, frozen)[1]
         if speed <= fastest * _MARGIN_OF_HALVES:
             return max(fastest, speed), frozen.sampling
         fastest = speed
     return None
 
 
-def _box_of_halves(passage: StretchToBound, speed: float) -> tuple[float, float, float, float]:
+def _box_of_halves(stretch: StretchToBound, speed: float) -> tuple[float, float, float, float]:
     """Return a box round the positions within half of the known time of an end at a speed [m/s].
 
     South, north, west and east [deg], not beyond the area of the chart.
     """
-    radius = math.degrees(1.01 * 0.5 * speed * passage.known / MEAN_RADIUS)
-    south, north, _, _ = _GLOBE if passage.chart is None else passage.chart.area.array()
-    ends = [lat for lat, _ in (passage.start, passage.goal)]
+    radius = math.degrees(1.01 * 0.5 * speed * stretch.known / MEAN_RADIUS)
+    south, north, _, _ = _GLOBE if stretch.chart is None else stretch.chart.area.array()
+    ends = [lat for lat, _ in (stretch.start, stretch.goal)]
     south = max(min(ends) - radius, south, _GLOBE[0])
     north = min(max(ends) + radius, north, _GLOBE[1])
     beyond = 180.0
     if radius + max(np.abs(ends)) < _GLOBE[1]:
         shrink = math.cos(math.radians(max(np.abs(ends))))
         beyond = math.degrees(math.asin(math.sin(math.radians(radius)) / shrink))
-    east = longitude_difference(passage.goal[1], passage.start[1])
+    east = longitude_difference(stretch.goal[1], stretch.start[1])
     half = min(0.5 * abs(east) + beyond, 180.0)
-    middle = passage.start[1] + 0.5 * east
+    middle = stretch.start[1] + 0.5 * east
     return south, north, middle - half, middle + half
 
 
-def _round_box(passage: StretchToBound) -> tuple[float, float, float, float]:
-    """Return a box all round the globe, but for the poles; its seam is far from the passage."""
+def _round_box(stretch: StretchToBound) -> tuple[float, float, float, float]:
+    """Return a box all round the globe, but for the poles; its seam is far from the stretch."""
     south, north = -_LARGEST_LATITUDE, _LARGEST_LATITUDE
-    if passage.chart is not None:  # with some cells beyond, which are closed
-        south = max(south, passage.chart.area.south - _BEYOND_GLOBE)
-        north = min(north, passage.chart.area.north + _BEYOND_GLOBE)
-    start, goal = passage.start[1], passage.goal[1]
+    if stretch.chart is not None:  # with some cells beyond, which are closed
+        south = max(south, stretch.chart.area.south - _BEYOND_GLOBE)
+        north = min(north, stretch.chart.area.north + _BEYOND_GLOBE)
+    start, goal = stretch.start[1], stretch.goal[1]
     seam = start + 0.5 * longitude_difference(goal, start) - 180.0
     return south, north, seam, seam + 360.0
 
 
 def _box_of_routes(
-    passage: StretchToBound, speed: float
+    stretch: StretchToBound, speed: float
 ) -> tuple[float, float, float, float] | None:
     """Return a box round all positions from which start and goal are reached in the known time.
 
     South, north, west and east [deg], not beyond the area of the chart. None where it holds a pole
     or more than 350 degrees of longitude.
     """
-    start, goal, total = passage.start, passage.goal, speed * passage.known
+    start, goal, total = stretch.start, stretch.goal, speed * stretch.known
     length = float(distance(*start, *goal))
     total = max(total, length * (1.0 + 1e-6) + 1.0)
     if total > 1.8e7:
@@ -389,8 +389,8 @@ def _box_of_routes(
     north = max(float(lat.max()), start[0], goal[0]) + margin
     west = start[1] + min(float(turned.min()), toward_goal, 0.0) - margin
     east = start[1] + max(float(turned.max()), toward_goal, 0.0) + margin
-    if passage.chart is not None:  # with some cells beyond, which are closed
-        area, beyond = passage.chart.area, 0.03 * (north - south) + 0.01
+    if stretch.chart is not None:  # with some cells beyond, which are closed
+        area, beyond = stretch.chart.area, 0.03 * (north - south) + 0.01
         south, north = max(south, area.south - beyond), min(north, area.north + beyond)
     if south < -_LARGEST_LATITUDE or north > _LARGEST_LATITUDE or east - west > 350.0:
         return None

@@ -1,4 +1,4 @@
-"""Certified lower bounds of the cost of a passage at given prices of time."""
+"""Certified lower bounds of the cost of a stretch at given prices of time."""
 
 from __future__ import annotations
 
@@ -47,17 +47,17 @@ _SECONDS_A_CELL: Final = 2e-5, 1.5e-4  # of one setting, without and with tables
 
 @dataclass(frozen=True, eq=False)
 class CostToBound:
-    """What a passage costs.
+    """What a stretch costs.
 
     Attributes
     ----------
-    passage : Its ``known`` is the longest time that counts [s].
+    stretch : Its ``known`` is the longest time that counts [s].
     ship : Settings with their consumption.
     inside, outside : Least prices of a unit of consumption in and out of emission control areas.
     second : Price of a second under way or waiting.
     """
 
-    passage: StretchToBound
+    stretch: StretchToBound
     ship: PricedShip
     inside: float
     outside: float
@@ -97,7 +97,7 @@ def certify_costs(
 
     Parameters
     ----------
-    cost : The passage. Its longest time is that of the slowest routes that the bound is for.
+    cost : The stretch. Its longest time is that of the slowest routes that the bound is for.
     prices_of_time : In addition to the price of time in the cost [1/s], (n,).
     known : Cost plus priced time of routes that exist, one for each price, (n,).
     seconds : Time that the search may take [s]. A mesh is completed once begun; the next finer one
@@ -111,7 +111,7 @@ def certify_costs(
     """
     began, count = clock.perf_counter(), len(prices_of_time)
     best = CostCertificate(np.full(count, -math.inf), 0, "")
-    domain = BarrierDomain.around(cost.passage, _RASTER_CELLS)
+    domain = BarrierDomain.around(cost.stretch, _RASTER_CELLS)
     if domain is None:
         return best
     seconds_each = cost.second + np.asarray(prices_of_time, float)
@@ -120,22 +120,22 @@ def certify_costs(
     )
     if not (per_metre > 0.0).all():
         return best
-    free = ROUNDING_FACTOR * per_metre * cost.passage.length
+    free = ROUNDING_FACTOR * per_metre * cost.stretch.length
     best = replace(best, values=np.minimum(free, known), sampling=domain.sampling)
-    raster = _cropped(domain.raster, cost.passage, float((known / per_metre).max()))
-    refinement = max(1, math.ceil(_FIRST_CELLS * domain.cell_height / cost.passage.length))
-    weather = (axes_needed(cost.passage.ship.table) | axes_needed(cost.ship.consumption)) != 0
+    raster = _cropped(domain.raster, cost.stretch, float((known / per_metre).max()))
+    refinement = max(1, math.ceil(_FIRST_CELLS * domain.cell_height / cost.stretch.length))
+    weather = (axes_needed(cost.stretch.ship.table) | axes_needed(cost.ship.consumption)) != 0
     cells = (raster.values.shape[1] - 1) * (raster.values.shape[2] - 1)
     expected = _SECONDS_A_CELL[weather] * cells * refinement**2 * len(cost.ship.settings)
     while clock.perf_counter() - began + expected <= seconds:
-        wide = round(cost.passage.length / domain.cell_height * refinement)
+        wide = round(cost.stretch.length / domain.cell_height * refinement)
         if wide > most_cells or _bytes_of_motions(cost, cells * refinement**2) > _MOST_BYTES:
             break
         start = clock.perf_counter()
         mesh = build_mesh(
-            raster, refinement, domain.ship, cost.passage.chart,
-            departures=cost.passage.departures, by_steps=bool(domain.sampling),
-            kept_out=cost.passage.kept_out, margins=domain.margins,
+            raster, refinement, domain.ship, cost.stretch.chart,
+            departures=cost.stretch.departures, by_steps=bool(domain.sampling),
+            kept_out=cost.stretch.kept_out, margins=domain.margins,
         )  # fmt: skip
         level = _CostLevel.on(mesh, cost, domain.fastest, float((known / per_metre).max()))
         found = [level.bound(*row) for row in zip(seconds_each, known, per_metre)]
@@ -146,7 +146,7 @@ def certify_costs(
 
 
 def _sectors(cost: CostToBound) -> int:
-    needs = axes_needed(cost.passage.ship.table) | axes_needed(cost.ship.consumption)
+    needs = axes_needed(cost.stretch.ship.table) | axes_needed(cost.ship.consumption)
     return _SECTORS if needs & ANGLES else 1
 
 
@@ -154,13 +154,13 @@ def _bytes_of_motions(cost: CostToBound, cells: int) -> int:
     return 8 * cells * len(cost.ship.settings) * (_sectors(cost) + COURSES)
 
 
-def _cropped(raster: RasterArrays, passage: StretchToBound, reach: float) -> RasterArrays:
+def _cropped(raster: RasterArrays, stretch: StretchToBound, reach: float) -> RasterArrays:
     """Return the part of a raster that routes of a greatest length [m] may touch, and a little."""
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner
     lat, lon = lat0 + dlat * np.arange(rows), lon0 + dlon * np.arange(columns)
-    far = np.asarray(distance(lat[:, None], lon[None, :], *passage.start), float)
-    far += np.asarray(distance(lat[:, None], lon[None, :], *passage.goal), float)
+    far = np.asarray(distance(lat[:, None], lon[None, :], *stretch.start), float)
+    far += np.asarray(distance(lat[:, None], lon[None, :], *stretch.goal), float)
     near = far < reach + 6.0 * 111_700.0 * math.hypot(dlat, dlon)
     parts = []
     for axis in (1, 0):
@@ -195,10 +195,10 @@ class _CostLevel:
 
     @classmethod
     def on(cls, mesh: BarrierMesh, cost: CostToBound, fastest: float, reach: float) -> _CostLevel:
-        passage, settings = cost.passage, len(cost.ship.settings)
-        from_start = mesh.least_times(*passage.start, 1.0)
-        to_goal = mesh.least_times(*passage.goal, 1.0)
-        windows = TimeWindows(from_start / fastest, passage.known - to_goal / fastest)
+        stretch, settings = cost.stretch, len(cost.ship.settings)
+        from_start = mesh.least_times(*stretch.start, 1.0)
+        to_goal = mesh.least_times(*stretch.goal, 1.0)
+        windows = TimeWindows(from_start / fastest, stretch.known - to_goal / fastest)
         wanted = (from_start + to_goal < reach) & (windows.first <= windows.last)
         shape, sectors = wanted.shape, _sectors(cost)
         speed, consumption = (np.zeros((*shape, settings, sectors), np.float32) for _ in range(2))
@@ -206,14 +206,14 @@ class _CostLevel:
         motions = CellMotions(np.zeros(shape, bool), speed, consumption, seconds, amount)
         fill_motions(mesh.world, cost.ship, windows, wanted, motions)
         prices = np.full(shape, min(cost.inside, cost.outside))
-        areas = None if passage.chart is None else passage.chart.control_areas
+        areas = None if stretch.chart is None else stretch.chart.control_areas
         if cost.inside > cost.outside and areas is not None:
             prices[cells_inside(areas, mesh.lat, mesh.lon)] = cost.inside
         return cls(mesh, cost, from_start, to_goal, wanted, windows, motions, prices)
 
     def bound(self, second: float, known: float, per_metre: float) -> float:
         """Return the best bound of some rounds of solving, checking and correcting."""
-        mesh, passage = self.mesh, self.cost.passage
+        mesh, stretch = self.mesh, self.cost.stretch
         rates = CostRates(self.consumption, second)
         reach = self.wanted & (per_metre * (self.from_start + self.to_goal) < known)
         solvable = nodes_of(reach & self.motions.is_open, mesh.shape)
@@ -221,8 +221,8 @@ class _CostLevel:
         def slowness(rows: slice, columns: slice) -> float:
             return self.cost.least_per_metre(second, strongest_current_near(mesh, rows, columns))
 
-        course = float(inverse(*passage.goal, *passage.start)[1])
-        given = plane_at_source(mesh, passage.goal, course, slowness)
+        course = float(inverse(*stretch.goal, *stretch.start)[1])
+        given = plane_at_source(mesh, stretch.goal, course, slowness)
         solvable &= np.isnan(given)
         factor, excess = np.ones(mesh.shape), np.empty(self.wanted.shape)
         best = 0.0
@@ -277,5 +277,5 @@ class _CostLevel:
         if scale > _LARGEST_SCALE:
             return 0.0
         centre = 0.25 * (phi[:-1, :-1] + phi[:-1, 1:] + phi[1:, :-1] + phi[1:, 1:])
-        found = self.mesh.value_at(phi, centre, *self.cost.passage.start)
+        found = self.mesh.value_at(phi, centre, *self.cost.stretch.start)
         return min(ROUNDING_FACTOR * found / (1.0 + scale), known)

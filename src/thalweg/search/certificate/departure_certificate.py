@@ -1,4 +1,4 @@
-"""The certificate of a passage that may depart at any moment of a window."""
+"""The certificate of a stretch that may depart at any moment of a window."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ _SPLIT_FIRST: Final = 900.0  # pieces this long or longer [s] are divided before
 
 
 def certify_departures(
-    passage: StretchToBound, *, seconds: float, target: float = 0.005
+    stretch: StretchToBound, *, seconds: float, target: float = 0.005
 ) -> TimeCertificate:
-    """Bound the time of every route of a passage from below, whenever it departs.
+    """Bound the time of every route of a stretch from below, whenever it departs.
 
     The window is divided where its bound is least: a barrier for a piece of the window rises no
     faster than the conditions of any departure in that piece allow.
 
     Parameters
     ----------
-    passage : With or without a window of departures.
+    stretch : With or without a window of departures.
     seconds : Time that the search for a bound may take [s]; 0 for that of the geodesic alone.
     target : Gap [fraction of the known time] at which the search ends.
 
@@ -42,20 +42,20 @@ def certify_departures(
     TimeCertificate : The least bound of all pieces of the window; that of the geodesic near a pole
         and across half of the globe.
     """
-    if passage.departures <= 0.0:
-        return certify_time(passage, seconds=seconds, target=target)
+    if stretch.departures <= 0.0:
+        return certify_time(stretch, seconds=seconds, target=target)
     began = clock.perf_counter()
-    rate = usual_rate(passage)
-    domain = BarrierDomain.around(passage, first_cells(seconds, rate))
+    rate = usual_rate(stretch)
+    domain = BarrierDomain.around(stretch, first_cells(seconds, rate))
     if domain is None:
-        return certify_time(passage, seconds=seconds)
-    free = free_space_time(passage, domain, seconds=seconds)
+        return certify_time(stretch, seconds=seconds)
+    free = free_space_time(stretch, domain, seconds=seconds)
     if seconds > 0.0:
-        rate = seconds_a_cell(passage, domain)
+        rate = seconds_a_cell(stretch, domain)
     cells = first_cells(seconds, rate)
-    enough = (1.0 - target) * passage.known
+    enough = (1.0 - target) * stretch.known
     order = itertools.count()
-    pieces = [(free.value, next(order), _Piece.of(passage, domain, (cells, rate), free))]
+    pieces = [(free.value, next(order), _Piece.of(stretch, domain, (cells, rate), free))]
     while seconds > 0.0 and pieces[0][0] < enough:
         piece = pieces[0][2]
         left = seconds - (clock.perf_counter() - began)
@@ -80,7 +80,7 @@ class _Piece:
     detail : Cells and rate of the search.
     """
 
-    passage: StretchToBound
+    stretch: StretchToBound
     domain: BarrierDomain
     detail: tuple[int, float]
     search: BarrierSearch
@@ -89,25 +89,25 @@ class _Piece:
     @classmethod
     def of(
         cls,
-        passage: StretchToBound,
+        stretch: StretchToBound,
         domain: BarrierDomain,
         detail: tuple[int, float],
         best: TimeCertificate,
     ) -> _Piece:
-        return cls(passage, domain, detail, BarrierSearch(passage, domain, *detail), best)
+        return cls(stretch, domain, detail, BarrierSearch(stretch, domain, *detail), best)
 
     @property
     def is_divisible(self) -> bool:
-        span = self.passage.departures
-        if span <= _SHORTEST_PIECE * self.passage.known:
+        span = self.stretch.departures
+        if span <= _SHORTEST_PIECE * self.stretch.known:
             return False
         return span >= _SPLIT_FIRST or self.best.cells > 0
 
     def halves(self) -> list[_Piece]:
-        first = self.passage.depart
-        middle = first + 0.5 * self.passage.departures
-        early = replace(self.passage, latest=middle)
-        late = replace(self.passage, depart=middle)
+        first = self.stretch.depart
+        middle = first + 0.5 * self.stretch.departures
+        early = replace(self.stretch, latest=middle)
+        late = replace(self.stretch, depart=middle)
         later = self.domain.from_departure(middle - first)
         return [
             _Piece.of(early, self.domain, self.detail, self.best),

@@ -61,21 +61,21 @@ class HeightField:
         return np.hypot(np.abs(self.east).max(axis=0), np.abs(self.north).max(axis=0))
 
 
-def heights_along(passage: StretchToBound, domain: BarrierDomain) -> list[HeightField]:
+def heights_along(stretch: StretchToBound, domain: BarrierDomain) -> list[HeightField]:
     """Return heights: by the length along the great circle, and by the distance from the goal."""
     lat, lon = domain.axes
     here = np.meshgrid(lat, lon, indexing="ij")
-    start, goal = unit_vectors(*np.array([passage.start, passage.goal]).T)
+    start, goal = unit_vectors(*np.array([stretch.start, stretch.goal]).T)
     ahead = goal - (goal @ start) * start
     ahead /= max(float(np.linalg.norm(ahead)), 1e-12)
     there = unit_vectors(*here)
     along = _RADIUS * np.arctan2(there @ ahead, there @ start)
-    nearer = -np.asarray(distance(*here, *passage.goal))
-    return [_height_field(values, passage, lat, lon) for values in (along, nearer)]
+    nearer = -np.asarray(distance(*here, *stretch.goal))
+    return [_height_field(values, stretch, lat, lon) for values in (along, nearer)]
 
 
 def _height_field(
-    values: FloatArray, passage: StretchToBound, lat: FloatArray, lon: FloatArray
+    values: FloatArray, stretch: StretchToBound, lat: FloatArray, lon: FloatArray
 ) -> HeightField:
     # degrees of longitude are longest, and those of latitude shortest, at the equator
     rows = (lat[:-1], lat[1:], np.clip(0.0, lat[:-1], lat[1:]))
@@ -85,7 +85,7 @@ def _height_field(
     for north, east in map(metres_per_degree, rows):
         slopes_east += [by_east[side] / east[:, None] for side in _SIDES]
         slopes_north += [by_north[:, side] / north[:, None] for side in _SIDES]
-    ends = [_bilinear(values, lat, lon, *end) for end in (passage.start, passage.goal)]
+    ends = [_bilinear(values, lat, lon, *end) for end in (stretch.start, stretch.goal)]
     return HeightField(
         ends[1] - ends[0],
         np.array([np.min(slopes_east, axis=0), np.max(slopes_east, axis=0)]),
@@ -104,7 +104,7 @@ def _bilinear(values: FloatArray, lat: FloatArray, lon: FloatArray, y: float, x:
 
 
 def strongest_fair_currents(
-    passage: StretchToBound,
+    stretch: StretchToBound,
     domain: BarrierDomain,
     fastest: float,
     height: HeightField,
@@ -115,7 +115,7 @@ def strongest_fair_currents(
 
     Parameters
     ----------
-    passage : With one departure.
+    stretch : With one departure.
     domain : All water that the ship can reach in the known time.
     fastest : No ship is faster over ground [m/s].
     areas : Cells of the raster, (rows, columns), for which the currents are taken together.
@@ -133,15 +133,15 @@ def strongest_fair_currents(
     half = _half_diagonals(lat, lon)[:, None]
     from_start, to_goal = (
         np.maximum(np.asarray(distance(*end, *middle)) - half, 0.0) / fastest
-        for end in (passage.start, passage.goal)
+        for end in (stretch.start, stretch.goal)
     )
-    in_reach = from_start + to_goal <= passage.known
+    in_reach = from_start + to_goal <= stretch.known
     steepest = float(height.steepest[in_reach].max(initial=0.0))
-    times = np.clip(domain.raster.times, 0.0, passage.known)
-    times = np.unique([0.0, *times, passage.known])
+    times = np.clip(domain.raster.times, 0.0, stretch.known)
+    times = np.unique([0.0, *times, stretch.known])
     order = np.flatnonzero(in_reach)
     order = order[np.argsort(to_goal.ravel()[order])]
-    rasters = _by_layer(passage, domain)
+    rasters = _by_layer(stretch, domain)
     drift = float(domain.margins[CURRENT_EAST]) * height.steepest
 
     def fair_at(time: float) -> FloatArray:
@@ -185,14 +185,14 @@ def _half_diagonals(lat: FloatArray, lon: FloatArray) -> FloatArray:
     return np.asarray(0.5 * 1.01 * np.hypot(width, tall))
 
 
-def _by_layer(passage: StretchToBound, domain: BarrierDomain) -> list[RasterArrays]:
+def _by_layer(stretch: StretchToBound, domain: BarrierDomain) -> list[RasterArrays]:
     """Return the raster of a domain, of each layer of the sea alone where there are several.
 
     In a cell, and between two times, with one unknown value a layer is unknown all over: the next
     layer holds there up to the corners and times at which the first one is known.
     """
     name = CHANNEL_VARIABLES[CURRENT_EAST]
-    layers = [layer for layer in passage.sea.layers if name in layer.variables]
+    layers = [layer for layer in stretch.sea.layers if name in layer.variables]
     if len(layers) < 2:
         return [domain.raster]
     lat, lon = np.meshgrid(*domain.axes, indexing="ij")
@@ -200,12 +200,12 @@ def _by_layer(passage: StretchToBound, domain: BarrierDomain) -> list[RasterArra
     for layer in layers:
         try:
             fields = freeze_station_fields(
-                (layer,), lat.ravel(), lon.ravel(), *passage.period, (CURRENT_EAST, CURRENT_NORTH)
+                (layer,), lat.ravel(), lon.ravel(), *stretch.period, (CURRENT_EAST, CURRENT_NORTH)
             )
         except OutsidePeriodError:  # of data that have no value at these times
             continue
         values = np.moveaxis(fields.values.reshape(*lat.shape, *fields.values.shape[1:]), 2, 0)
-        times = fields.times - passage.depart
+        times = fields.times - stretch.depart
         rasters.append(
             domain.raster._replace(times=times, values=values, channel_index=fields.channel_index)
         )

@@ -20,13 +20,13 @@ _TOLERANCE: Final = 0.5  # of the positions that are kept [cells]
 
 
 def fast_path_on_raster(
-    passage: StretchToBound, cells: int
+    stretch: StretchToBound, cells: int
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return positions (lat, lon) [deg] of a fast way through the data themselves.
 
     Parameters
     ----------
-    passage : Of a ship whose speed through water does not depend on the weather.
+    stretch : Of a ship whose speed through water does not depend on the weather.
     cells : Cells of the raster along its longer side where the data are no finer.
 
     Returns
@@ -34,18 +34,18 @@ def fast_path_on_raster(
     pair of float64 array, or None
         None without currents, near a pole, and where the goal is not reached in the known time.
     """
-    domain = BarrierDomain.around(passage, cells)
+    domain = BarrierDomain.around(stretch, cells)
     if domain is None or domain.fastest <= domain.ship.top_speed:
         return None
-    mesh = build_mesh(domain.raster, 1, domain.ship, passage.chart)
-    own = mesh.least_times(*passage.start, domain.fastest)
-    other = mesh.least_times(*passage.goal, domain.fastest)
-    task = BarrierTask(mesh, passage.start, passage.goal, passage.known, own, other, True)
-    return _way_back(mesh, first_arrivals(task), passage)
+    mesh = build_mesh(domain.raster, 1, domain.ship, stretch.chart)
+    own = mesh.least_times(*stretch.start, domain.fastest)
+    other = mesh.least_times(*stretch.goal, domain.fastest)
+    task = BarrierTask(mesh, stretch.start, stretch.goal, stretch.known, own, other, True)
+    return _way_back(mesh, first_arrivals(task), stretch)
 
 
 def _way_back(
-    mesh: BarrierMesh, phi: FloatArray, passage: StretchToBound
+    mesh: BarrierMesh, phi: FloatArray, stretch: StretchToBound
 ) -> tuple[FloatArray, FloatArray] | None:
     """Follow the earliest arrivals from the goal back to the start."""
     world = mesh.world
@@ -58,7 +58,7 @@ def _way_back(
         turned = (position[1] - mesh.lon[0]) % 360.0 + mesh.lon[0]
         return np.asarray((np.array([position[0], turned]) - corner) / steps)
 
-    start, at = place(passage.start), place(passage.goal)
+    start, at = place(stretch.start), place(stretch.goal)
     from scipy import ndimage
 
     found = [at]
@@ -84,7 +84,7 @@ def _way_back(
     line = shapely.LineString([*found, start]).simplify(_TOLERANCE)
     positions = corner + np.asarray(line.coords)[::-1] * steps
     lat, lon = positions.T.copy()
-    (lat[0], lat[-1]), (lon[0], lon[-1]) = zip(passage.start, passage.goal)
+    (lat[0], lat[-1]), (lon[0], lon[-1]) = zip(stretch.start, stretch.goal)
     return lat, lon
 
 

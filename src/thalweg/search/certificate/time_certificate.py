@@ -1,4 +1,4 @@
-"""The certificate of a passage: a lower bound of the time of every route in open water."""
+"""The certificate of a stretch: a lower bound of the time of every route in open water."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ _GROWTH: Final = 3.5  # of the time from one mesh to the next
 
 @dataclass(frozen=True, eq=False)
 class TimeCertificate:
-    """A lower bound of the time of a passage, with the barrier function that proves it.
+    """A lower bound of the time of a stretch, with the barrier function that proves it.
 
     Attributes
     ----------
@@ -87,9 +87,9 @@ class TimeCertificate:
 
 
 def certify_time(
-    passage: StretchToBound, *, seconds: float, target: float = 0.005
+    stretch: StretchToBound, *, seconds: float, target: float = 0.005
 ) -> TimeCertificate:
-    """Bound the time of every route of a passage from below.
+    """Bound the time of every route of a stretch from below.
 
     Parameters
     ----------
@@ -103,38 +103,38 @@ def certify_time(
     TimeCertificate
         The largest bound found; that of the least length near a pole and across half of the globe.
     """
-    began, rate = clock.perf_counter(), usual_rate(passage)
-    cells = _cells(passage, seconds, rate)
-    domain = BarrierDomain.around(passage, cells)
+    began, rate = clock.perf_counter(), usual_rate(stretch)
+    cells = _cells(stretch, seconds, rate)
+    domain = BarrierDomain.around(stretch, cells)
     if domain is None:
-        globe = BarrierDomain.of_globe(passage, _CELLS_OF_GEODESIC)
-        return free_space_time(passage, globe, seconds=seconds)
+        globe = BarrierDomain.of_globe(stretch, _CELLS_OF_GEODESIC)
+        return free_space_time(stretch, globe, seconds=seconds)
     if seconds > 0.0:
-        rate = seconds_a_cell(passage, domain)
-    if rate > _MUCH_SLOWER * usual_rate(passage):
-        cells = _cells(passage, seconds, rate)
-        domain = BarrierDomain.around(passage, cells) or domain
+        rate = seconds_a_cell(stretch, domain)
+    if rate > _MUCH_SLOWER * usual_rate(stretch):
+        cells = _cells(stretch, seconds, rate)
+        domain = BarrierDomain.around(stretch, cells) or domain
     finer = None
     if domain.sampling and domain.has_cells(cells):
-        finer = BarrierDomain.around(passage, _CELLS_OF_GEODESIC, fastest=domain.fastest)
-    best = free_space_time(passage, finer or domain, seconds=seconds)
+        finer = BarrierDomain.around(stretch, _CELLS_OF_GEODESIC, fastest=domain.fastest)
+    best = free_space_time(stretch, finer or domain, seconds=seconds)
     if seconds <= 0.0:
         return best
     left = seconds - (clock.perf_counter() - began)
-    if best.round_land and left < _LEAST_IN_CALM and is_calm(passage.sea):
+    if best.round_land and left < _LEAST_IN_CALM and is_calm(stretch.sea):
         return best
-    search = BarrierSearch(passage, domain, first_cells(seconds, rate), rate)
+    search = BarrierSearch(stretch, domain, first_cells(seconds, rate), rate)
     return _raised_by_barriers(best, search, left, target)
 
 
 def certify_priced_length(
-    passage: StretchToBound, price: float, *, seconds: float, target: float = 0.005
+    stretch: StretchToBound, price: float, *, seconds: float, target: float = 0.005
 ) -> TimeCertificate | None:
     """Bound the length of every route from below, with dearer metres inside the control areas.
 
     Parameters
     ----------
-    passage : Of a ship of 1 m/s in still water; its ``known`` is the priced length of a route [m].
+    stretch : Of a ship of 1 m/s in still water; its ``known`` is the priced length of a route [m].
     price : What a metre inside the control areas of the chart counts, 1 or more; others count 1.
     seconds, target : As for `certify_time`.
 
@@ -147,17 +147,17 @@ def certify_priced_length(
     The priced length is the time of a ship that is slower inside the areas by that price.
     """
     began = clock.perf_counter()
-    ship = replace(passage.ship, speed_field=_one_metre_a_second)
-    passage = replace(passage, ship=ship)
-    rate = usual_rate(passage)
-    domain = BarrierDomain.around(passage, _cells(passage, seconds, rate))
+    ship = replace(stretch.ship, speed_field=_one_metre_a_second)
+    stretch = replace(stretch, ship=ship)
+    rate = usual_rate(stretch)
+    domain = BarrierDomain.around(stretch, _cells(stretch, seconds, rate))
     if domain is None:
         return None
-    best = free_space_time(passage, domain)
-    if passage.chart is not None:
-        domain = domain.slower_inside(passage.chart.zones, 1.0 / price)
+    best = free_space_time(stretch, domain)
+    if stretch.chart is not None:
+        domain = domain.slower_inside(stretch.chart.zones, 1.0 / price)
     left = seconds - (clock.perf_counter() - began)
-    search = BarrierSearch(passage, domain, first_cells(seconds, rate), rate)
+    search = BarrierSearch(stretch, domain, first_cells(seconds, rate), rate)
     return _raised_by_barriers(best, search, left, target)
 
 
@@ -171,11 +171,11 @@ def _raised_by_barriers(
     best: TimeCertificate, search: BarrierSearch, seconds: float, target: float
 ) -> TimeCertificate:
     """Return the best bound of meshes that are finer and finer, for some time [s]."""
-    passage, began, left = search.passage, clock.perf_counter(), seconds
-    enough = (1.0 - target) * passage.known
+    stretch, began, left = search.stretch, clock.perf_counter(), seconds
+    enough = (1.0 - target) * stretch.known
     while best.value < enough and search.expected_seconds <= left:
         found = search.refine()
-        if found is not None and found.reached > (1.0 + _CONTRADICTION) * passage.known:
+        if found is not None and found.reached > (1.0 + _CONTRADICTION) * stretch.known:
             break  # the sea of the proof is not that of the known route
         if found is not None and found.value > best.value:
             best = found
@@ -184,7 +184,7 @@ def _raised_by_barriers(
 
 
 def free_space_time(
-    passage: StretchToBound, domain: BarrierDomain, *, seconds: float = 0.0
+    stretch: StretchToBound, domain: BarrierDomain, *, seconds: float = 0.0
 ) -> TimeCertificate:
     """Return the bound of the least length at the greatest speed over ground in a domain.
 
@@ -193,26 +193,26 @@ def free_space_time(
     seconds : Time for a bound [s], of which the least length round land may take all in a sea that
         is the same everywhere, and a part in others; 0 for that of the geodesic.
     """
-    seconds *= 1.0 if is_uniform(passage.sea) else _SHARE_OF_LENGTH
+    seconds *= 1.0 if is_uniform(stretch.sea) else _SHARE_OF_LENGTH
     began, fastest = clock.perf_counter(), domain.fastest
-    value = geodesic = ROUNDING_FACTOR * passage.length / fastest
-    chart = passage.chart
+    value = geodesic = ROUNDING_FACTOR * stretch.length / fastest
+    chart = stretch.chart
     if chart is not None and seconds > 0.0:
         links = [BarrierLink(*canal.ends, canal.transit_time) for canal in chart.canals]
         length = length_round_land(
-            chart, passage.start, passage.goal, passage.known * fastest,
-            links=links, speed=fastest, kept_out=passage.kept_out, seconds=seconds,
+            chart, stretch.start, stretch.goal, stretch.known * fastest,
+            links=links, speed=fastest, kept_out=stretch.kept_out, seconds=seconds,
         )  # fmt: skip
         value = max(value, length / fastest)
     used, by_land = clock.perf_counter() - began, value > geodesic
     return TimeCertificate(
-        min(value, passage.known), domain.sampling, 0, used, value, round_land=by_land
+        min(value, stretch.known), domain.sampling, 0, used, value, round_land=by_land
     )
 
 
 @dataclass(eq=False)
 class BarrierSearch:
-    """The search for barriers of one passage on finer and finer meshes.
+    """The search for barriers of one stretch on finer and finer meshes.
 
     Attributes
     ----------
@@ -221,7 +221,7 @@ class BarrierSearch:
     expected_seconds : Estimate of the time that the next mesh takes; infinite when there is none.
     """
 
-    passage: StretchToBound
+    stretch: StretchToBound
     domain: BarrierDomain
     cells: int
     rate: float
@@ -230,7 +230,7 @@ class BarrierSearch:
     _level: _Level | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        wanted = self.cells * self.domain.cell_height / self.passage.length
+        wanted = self.cells * self.domain.cell_height / self.stretch.length
         self._refinement = max(1, math.ceil(wanted))
         known = np.isfinite(self.domain.raster.values).all(axis=3).any(axis=0)
         counted = known.size * (_EMPTY_CELL + (1.0 - _EMPTY_CELL) * float(known.mean()))
@@ -238,22 +238,22 @@ class BarrierSearch:
 
     def refine(self) -> TimeCertificate | None:
         """Return the bound of the next mesh; None where no barrier passed the check."""
-        passage, domain, began = self.passage, self.domain, clock.perf_counter()
+        stretch, domain, began = self.stretch, self.domain, clock.perf_counter()
         mesh = build_mesh(
-            domain.raster, self._refinement, domain.ship, passage.chart,
-            departures=passage.departures, by_steps=bool(domain.sampling),
-            kept_out=passage.kept_out, margins=domain.margins,
+            domain.raster, self._refinement, domain.ship, stretch.chart,
+            departures=stretch.departures, by_steps=bool(domain.sampling),
+            kept_out=stretch.kept_out, margins=domain.margins,
         )  # fmt: skip
-        self._level = _Level.on(mesh, passage, domain.fastest, self._level)
-        task, barrier = self._level.certify(passage)
+        self._level = _Level.on(mesh, stretch, domain.fastest, self._level)
+        task, barrier = self._level.certify(stretch)
         used = clock.perf_counter() - began
-        cells = round(passage.length / domain.cell_height * self._refinement)
+        cells = round(stretch.length / domain.cell_height * self._refinement)
         too_large = 4 * mesh.lat.size * mesh.lon.size > _MOST_NODES
         self.expected_seconds = math.inf if too_large else _GROWTH * used
         self._refinement *= 2
         if barrier is None:
             return None
-        value = min(barrier.value, passage.known)
+        value = min(barrier.value, stretch.known)
         return TimeCertificate(
             value, domain.sampling, cells, used, barrier.value, mesh, barrier, task
         )
@@ -279,18 +279,18 @@ class _Level:
 
     @classmethod
     def on(
-        cls, mesh: BarrierMesh, passage: StretchToBound, fastest: float, coarser: _Level | None
+        cls, mesh: BarrierMesh, stretch: StretchToBound, fastest: float, coarser: _Level | None
     ) -> _Level:
         """Begin with bounds from the geodesic, or from a mesh with cells twice as large."""
-        from_start = mesh.least_times(*passage.start, fastest)
-        to_goal = mesh.least_times(*passage.goal, fastest)
+        from_start = mesh.least_times(*stretch.start, fastest)
+        to_goal = mesh.least_times(*stretch.goal, fastest)
         if coarser is None:
-            return cls(mesh, from_start, to_goal, passage.known)
+            return cls(mesh, from_start, to_goal, stretch.known)
         return cls(
             mesh,
             np.maximum(from_start, _halved_cells(coarser.from_start)),
             np.maximum(to_goal, _halved_cells(coarser.to_goal)),
-            passage.known,
+            stretch.known,
             coarser.before,
         )
 
@@ -298,10 +298,10 @@ class _Level:
         """Return the cells that a faster route may touch."""
         return np.asarray(self.from_start + self.to_goal < self.known)
 
-    def certify(self, passage: StretchToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
+    def certify(self, stretch: StretchToBound) -> tuple[BarrierTask, CheckedBarrier | None]:
         """Find barriers from the goal and from the start; return the latter with its task."""
         back = find_barrier(
-            self._task(passage.goal, passage.start, self.before[0], forward=False),
+            self._task(stretch.goal, stretch.start, self.before[0], forward=False),
             _FIRST_ROUNDS[0] if self.before[0] is None else _LATER_ROUNDS[0],
         )
         course = None
@@ -309,8 +309,8 @@ class _Level:
             self.to_goal = np.where(
                 self.band(), np.maximum(self.to_goal, _least_in_cells(back)), self.to_goal
             )
-            course = slope_direction(self.mesh, back.phi, *passage.start)
-        task = self._task(passage.start, passage.goal, self.before[1], forward=True, course=course)
+            course = slope_direction(self.mesh, back.phi, *stretch.start)
+        task = self._task(stretch.start, stretch.goal, self.before[1], forward=True, course=course)
         forward = find_barrier(
             task, _FIRST_ROUNDS[1] if self.before[0] is None else _LATER_ROUNDS[1]
         )
@@ -350,9 +350,9 @@ def _halved_cells(values: FloatArray) -> FloatArray:
     return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
 
 
-def usual_rate(passage: StretchToBound) -> float:
+def usual_rate(stretch: StretchToBound) -> float:
     """Return the time that a first mesh takes for each of its cells, for most ships [s]."""
-    return USUAL_SECONDS_A_CELL[axes_needed(passage.ship.table) != 0]
+    return USUAL_SECONDS_A_CELL[axes_needed(stretch.ship.table) != 0]
 
 
 def first_cells(seconds: float, rate: float) -> int:
@@ -361,12 +361,12 @@ def first_cells(seconds: float, rate: float) -> int:
     return int(min(max(affordable, _FEWEST_CELLS), _FIRST_CELLS))
 
 
-def _cells(passage: StretchToBound, seconds: float, rate: float) -> int:
+def _cells(stretch: StretchToBound, seconds: float, rate: float) -> int:
     """Return the number of cells of the raster where the data are given by functions."""
     first = first_cells(seconds, rate)
-    if rate > _MUCH_SLOWER * usual_rate(passage):
+    if rate > _MUCH_SLOWER * usual_rate(stretch):
         return first
     first = max(first, _FEWEST_SAMPLES)
-    finest = _FINE_CELLS[axes_needed(passage.ship.table) != 0]
+    finest = _FINE_CELLS[axes_needed(stretch.ship.table) != 0]
     share = min(max(seconds / _SECONDS_OF_FINE_CELLS, 0.0), 1.0)
     return round(first + share * max(finest - first, 0))

@@ -309,7 +309,7 @@ def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]
     routes = [item.route for item in feasible]
     lat, lon = routes[0].track.lat, routes[0].track.lon
     departures = [route.depart for route in routes]
-    passage = StretchToBound(
+    stretch = StretchToBound(
         context.sea, context.chart, ship, context.needs.channels,
         (float(lat[0]), float(lon[0])), (float(lat[-1]), float(lon[-1])),
         depart=min(departures), known=max(route.time_h for route in routes) * HOUR,
@@ -319,7 +319,7 @@ def _cost_to_bound(trade_off: TradeOffContext, feasible: list[RefereedCandidate]
     if prices.dues > 0.0:  # a route off the network may sail in the cheapest zone throughout
         factor = min([1.0, *(float(one) for _, one in context.chart.zones.price)])
     return CostToBound(
-        passage, priced, factor * prices.inside, factor * prices.outside, prices.time
+        stretch, priced, factor * prices.inside, factor * prices.outside, prices.time
     )
 
 

@@ -63,12 +63,12 @@ def fair_current_lines(
     departures = {route.depart for route in routes if route.feasible}
     if reached is None or len(trade_off.ends) > 2 or len(departures) != 1:
         return none
-    passage, domain = reached.passage, reached.domain
+    stretch, domain = reached.stretch, reached.domain
     slow, rates = trade_off.slowness_and_rates(0.0)
     if domain is None or not (np.isfinite(slow) & (slow > 0.0) & np.isfinite(rates)).all():
         return none
     fastest = float(1.0 / slow.min()) + domain.strongest_current
-    if fastest > _OVERSHOOT * domain.fastest or passage.canal_speed(fastest) > 0.0:
+    if fastest > _OVERSHOOT * domain.fastest or stretch.canal_speed(fastest) > 0.0:
         return none
     prices, (areas, in_area) = trade_off.objective.prices, _areas(trade_off, domain)
     cheapest = min(prices.inside, prices.outside)
@@ -76,11 +76,11 @@ def fair_current_lines(
     everywhere = trade_off.least_price_of_consumption
     costs = [trade_off.least_zone_factor * price * rates - everywhere for price in of_area]
     count = _MOST_NUMBERS / (domain.raster.times.size * slow.size)
-    first = min(_SHORTER * passage.length / fastest, passage.known)
-    times = np.linspace(first, passage.known, int(min(max(count, 8), _VOYAGES)))
+    first = min(_SHORTER * stretch.length / fastest, stretch.known)
+    times = np.linspace(first, stretch.known, int(min(max(count, 8), _VOYAGES)))
     least, values = first, np.zeros(times.size)
-    for height in heights_along(passage, domain):
-        steepest, currents = strongest_fair_currents(passage, domain, fastest, height, areas, times)
+    for height in heights_along(stretch, domain):
+        steepest, currents = strongest_fair_currents(stretch, domain, fastest, height, areas, times)
         speeds, rise = steepest / slow, _SHORTER * height.rise
         possible = np.flatnonzero(greatest_rise(currents, float(speeds.max())) >= rise)
         if possible.size:
@@ -97,7 +97,7 @@ def fair_current_lines(
     lines = np.array([-slopes, values[hull][:-1] - slopes * times[hull][:-1]])
     lines = np.append(lines, [[0.0], [values[hull][-1]]], axis=1)
     lines[0] *= HOUR
-    return lines, passage.known / HOUR, least / HOUR
+    return lines, stretch.known / HOUR, least / HOUR
 
 
 def _areas(trade_off: TradeOffContext, domain: BarrierDomain) -> tuple[list[BoolArray], list[bool]]:
