@@ -138,6 +138,7 @@ def test_lighthouses_on_rocks_are_land(world, name):
     assert world.coastline.shore_distance(*ROCKS[name]) < 100.0
 
 
+@pytest.mark.slow
 def test_the_great_north_east_channel_ends_in_bligh_entrance():
     """The line ended in the middle of the strait; ships left between Anchor Cay and East Cay."""
     (channel,) = find_passages(["Torres: Great North"])

@@ -114,6 +114,7 @@ def test_a_route_that_breaks_a_limit_ends_with_code_4_and_shows_its_clearance(
     assert scored["min_ukc_m"] == pytest.approx(2.5)
 
 
+@pytest.mark.slow
 def test_evaluate_requires_the_clearance_of_the_ship_file(capsys, track, tmp_path, depth_file):
     ship = tmp_path / "ship.yaml"
     ship.write_text(

@@ -29,6 +29,7 @@ def wavy(points: int = 14, seed: int = 0) -> Genome:
     return Genome(lat, lon, random.integers(5, 12, points - 1))
 
 
+@pytest.mark.slow
 def test_the_referee_agrees():
     evaluator = jet.evaluator()
     genomes = [jet.straight(0), jet.straight(11), wavy(seed=1), wavy(seed=2)]

@@ -218,6 +218,7 @@ def test_a_way_back_round_the_ocean_is_not_taken_for_a_usual_one(fleet):
     assert back.confidence == "low" and back.voyages == 0
 
 
+@pytest.mark.slow
 def test_ships_that_leave_an_approach_early_do_not_sail_to_its_sea_end():
     """As between Hamburg and the Kiel Canal: 60 nm of the Elbe lead on to the open sea."""
     berth, turn, sea = (50.0, -29.0), (50.0, -30.0), (50.0, -32.0)

@@ -248,6 +248,7 @@ def test_trials_near_a_jump_of_the_arrivals_are_few() -> None:
     assert sum(abs(one - 500.3) < 1.0 for one in tried) <= 3
 
 
+@pytest.mark.slow
 def test_trials_search_no_later_departure(monkeypatch) -> None:
     asked: list[bool] = []
 

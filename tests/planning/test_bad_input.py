@@ -321,6 +321,7 @@ def test_distances_refuse_what_is_no_place(place):
         sea_distance(place, "Rotterdam")
 
 
+@pytest.mark.slow
 def test_one_via_point_of_a_distance_needs_no_list():
     one = sea_distance("Hull", "Rotterdam", via="Dover")
     assert one.nm == sea_distance("Hull", "Rotterdam", via=["Dover"]).nm

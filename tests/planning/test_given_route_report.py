@@ -53,6 +53,7 @@ def test_a_leg_against_the_traffic_of_dover_strait_is_stated(chart):
     assert not any(note.startswith("Runs against") for note in back)
 
 
+@pytest.mark.slow
 def test_approaches_slower_than_ordered_are_stated(chart):
     """The file of a plan with --approach-speed 13 took 3 h longer without, and no note said why."""
     approach = chart.approaches.of(PORTS.lookup("SESTO"))
@@ -190,6 +191,7 @@ def is_depth_to_check(line, chart):
     return any(note.startswith("Check the depth") for note in notes)
 
 
+@pytest.mark.slow
 def test_depth_is_not_read_near_the_sea_ends_of_approaches_as_in_plans(chart):
     """It was read from 12 nm off the berth, and in plans from 12 nm off the sea end."""
     at_sea = BALBOA[3:]

@@ -32,6 +32,7 @@ def test_a_ship_in_a_harbour_joins_the_line_of_its_port(world):
     assert approach.length < of_port.length + 1.0 * NAUTICAL_MILE
 
 
+@pytest.mark.slow
 def test_a_deep_ship_at_fisherman_islands_leaves_by_the_main_channel_of_brisbane():
     found = sea_distance((-27.385, 153.165), "Sydney", draught_m=14.0)
     by_name = sea_distance("Brisbane", "Sydney", draught_m=14.0)
@@ -40,6 +41,7 @@ def test_a_deep_ship_at_fisherman_islands_leaves_by_the_main_channel_of_brisbane
     assert any("beside the approach of Brisbane" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_a_ship_below_a_branch_goes_up_the_line_to_it(world):
     """In Chesapeake Bay south of Baltimore the way to the Delaware leaves the line above her."""
     place = 39.0, -76.40
@@ -91,6 +93,7 @@ def test_short_voyages_stay_in_their_sound(world):
     assert resolve_places(ROADS_OF_PRINCE_RUPERT, [], far, world)[0].approach is not None
 
 
+@pytest.mark.slow
 def test_a_ship_on_the_river_of_her_port_is_not_in_it(world):
     """Off Rimouski she is on the line of Montreal, and 260 miles from it."""
     ends = resolve_places((48.6, -68.55), [], "Montreal", world)
@@ -113,6 +116,7 @@ def test_ends_on_both_sides_of_a_canal_follow_their_lines(world):
     assert {way.canal for end in ends for way in end.ways} >= {"kiel"}
 
 
+@pytest.mark.slow
 def test_a_voyage_without_an_offing_takes_the_water_as_it_is(world):
     """Published cases begin and end in harbours of their charts."""
     ends = resolve_places(ROADS_OF_PRINCE_RUPERT, [], "Sydney", world, joins=False)

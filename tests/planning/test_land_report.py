@@ -59,6 +59,7 @@ def notes_on(
     return closed_passage_notes(context, route)
 
 
+@pytest.mark.slow
 def test_passages_of_the_way_that_a_draught_closes_share_a_note(world):
     """Surabaya, Badung Strait and Alas were named, beside the route by Lombok, and not Malacca."""
     (note,) = notes_on(world, TANKER, BY_LOMBOK)
@@ -82,6 +83,7 @@ def test_a_single_closed_passage_says_how_to_open_it(world):
     ]
 
 
+@pytest.mark.slow
 def test_a_canal_that_is_far_from_the_straight_line_is_named(world):
     """Nothing said why Yokohama to New York led by Good Hope, as only straight lines counted."""
     (note,) = notes_on(world, CAPESIZE, BY_GOOD_HOPE)

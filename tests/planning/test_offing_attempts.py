@@ -62,6 +62,7 @@ def attempts(world, ends, *errors):
     return tries, plan_off_land(context, ends, OFFING, run).needs.notes
 
 
+@pytest.mark.slow
 def test_shoals_open_round_the_end_that_no_water_leads_to(world):
     """The bar off Chittagong opened the reefs of the Red Sea and of Ceylon as well."""
     tries, notes = attempts(world, [COLOMBO, CHITTAGONG], (20.9, 91.5), (20.0, 91.5))
@@ -78,6 +79,7 @@ def test_shoals_open_everywhere_where_the_way_ends_between(world):
     assert any(note.startswith(f"{SHOALS_OPENED}, but for named areas of exact") for note in notes)
 
 
+@pytest.mark.slow
 def test_named_areas_of_exact_outline_open_last(world):
     tries, notes = attempts(world, [COLOMBO, CHITTAGONG], *10 * [(14.0, 86.0)])
     radii = [one["Colombo"][0] for one in tries]
@@ -86,6 +88,7 @@ def test_named_areas_of_exact_outline_open_last(world):
     assert any(note.startswith(f"{SHOALS_OPENED}: with that water") for note in notes)
 
 
+@pytest.mark.slow
 def test_the_distance_from_land_is_smaller_only_round_the_end_that_needs_it(world):
     """Busan was left at half a mile, at 20 kn, and shoals were open, because of Incheon."""
     ends = [INCHEON, BUSAN]

@@ -58,6 +58,7 @@ def test_a_passage_that_is_opened_is_used_in_spite_of_the_draught():
     assert found.nm < closed.nm - 80.0
 
 
+@pytest.mark.slow
 def test_a_passage_to_avoid_that_an_approach_leads_through_is_named():
     (note,) = [
         note
@@ -412,6 +413,7 @@ def tall_ship(metres):
     return Ship.from_dict({"name": "tall", "hull": hull, "speeds_kn": [15.0]})
 
 
+@pytest.mark.slow
 def test_a_ship_too_high_for_a_canal_takes_the_main_approach_and_is_stated_closed_ways():
     """366 m and 63 m high: through the Chesapeake and Delaware Canal, and not a word on Panama."""
     hull = {

@@ -14,6 +14,7 @@ from thalweg.planning.seaways import world_chart
 INDIAN_OCEAN, YELLOW_SEA = (-38.0, 60.0), (36.0, 123.5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("draught", "via", "miles"),
     [

@@ -81,6 +81,7 @@ def test_for_one_objective_a_few_faster_routes_are_given_as_well():
     assert fastest == pytest.approx(whole.routes[0].time_h, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_front_runs_from_fastest_to_cheapest_and_is_non_dominated():
     answer = still_front()
     time = np.array([route.time_h for route in answer.routes])

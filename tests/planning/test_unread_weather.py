@@ -109,6 +109,7 @@ def test_the_command_line_takes_wind_of_waves(tmp_path, capsys, fill):
     assert any("raises the known waves" in note for note in notes) == (fill[1] == "wind=waves")
 
 
+@pytest.mark.slow
 def test_a_ship_that_reads_the_direction_of_waves_alone_has_a_route():
     """She was refused for "gaps" in the data: the search did not read the heights."""
 

@@ -101,6 +101,7 @@ def test_a_wait_for_an_unknown_current_is_no_wait_for_a_tide():
     assert unknown_current_warnings(replace(route, wait_samples={})) == []
 
 
+@pytest.mark.slow
 def test_a_plan_that_cannot_leave_for_want_of_data_says_so():
     """The current is known from 02:00 on: the wait before is no wait for a tide."""
     sea = sea_with_currents_from_two_hours_on()

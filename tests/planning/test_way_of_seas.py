@@ -69,6 +69,7 @@ def test_a_route_by_a_strait_that_is_far_off_is_compared_with_the_way_by_sunda()
     assert in_sunda.sum() > 5 and not in_lombok.any()
 
 
+@pytest.mark.slow
 def test_a_longer_route_along_the_way_or_none_changes_nothing(monkeypatch):
     monkeypatch.setattr(way_of_seas, "lattice", lambda chart, *places, along: along)
     given = _route(8240.0)

@@ -8,6 +8,7 @@ from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.planning.demo_voyage import weather_blind
 
 
+@pytest.mark.slow
 def test_the_route_that_ignores_the_weather_keeps_the_ordered_speed():
     ship = Ship.load("yu-single-screw-169m")
     chart = Chart.open_water(46.0, 48.0, -21.0, -19.0)

@@ -70,6 +70,7 @@ def _gale_until(end: float, wind: float = 24.0) -> Sea:
     return Sea.from_functions(speeds, time_step=1800.0)
 
 
+@pytest.mark.slow
 def test_a_ship_waits_for_the_end_of_a_gale_that_her_speed_loss_cannot_predict():
     end = DEPART + 15 * 3600.0
     ship = Ship.from_dict(SHIP)

@@ -64,6 +64,7 @@ def test_at_first_waiting_from_low_slack_costs_energy():
     assert early[1] > early[0]
 
 
+@pytest.mark.slow
 def test_five_cycles_save_three_per_cent_at_most_when_waiting_is_free():
     found = study(five_cycles(HALVED["neap"]))
     rule, best = 100.0 * found.saving("current"), 100.0 * found.saving("optimum")

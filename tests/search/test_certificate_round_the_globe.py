@@ -29,6 +29,7 @@ def stretch(chart: Chart, known: float) -> StretchToBound:
     return StretchToBound(Sea.calm(), chart, ship, (), START, GOAL, depart=0.0, known=known)
 
 
+@pytest.mark.slow
 def test_the_way_round_a_wall_that_reaches_near_the_pole_is_the_bound():
     """The geodesic through the wall is less than half as long: 80 degrees of the equator."""
     best = 2.0 * float(distance(*START, 80.0, -8.0)) + float(distance(80.0, -8.0, 80.0, 8.0))

@@ -259,6 +259,7 @@ def test_a_forecast_becomes_a_sea(tmp_path, monkeypatch):
     assert kept.facts["frames"] == ["wind"] and kept.facts["run"] == "2026-11-22T00:00:00Z"
 
 
+@pytest.mark.slow
 def test_a_forecast_that_is_not_possible_is_refused(client):
     request = {"source": "gfs", "box": [60, 40, -10, -8], "start": "2026-11-22T00:00Z"}
     given = {**request, "end": "2026-11-23T00:00Z"}

@@ -220,6 +220,7 @@ def test_an_evaluation_that_its_ship_or_sea_cannot_do_is_refused(client, change,
     assert found["field"] == field and word in found["detail"] and found["remedy"]
 
 
+@pytest.mark.slow
 def test_a_departure_within_one_of_several_seas_is_taken(client):
     import xarray as xr
 
@@ -306,6 +307,7 @@ def test_departures_beyond_the_data_are_refused_unless_all_of_them_is_filled(cli
         check_plan_order(request, voyage, client.app.state.service)
 
 
+@pytest.mark.slow
 def test_variables_that_are_named_with_an_upload_are_used(client):
     import xarray as xr
 

@@ -365,6 +365,7 @@ def test_a_killed_driver_is_followed_by_one_that_finishes(folder, tmp_path):
     assert sorted(rows["id"]) == sorted(row.id for row in study.rows())
 
 
+@pytest.mark.slow
 def test_a_folder_has_one_driver_at_a_time(folder, tmp_path):
     study = base(folder, axes={"depart": DAYS})
     refused = []
