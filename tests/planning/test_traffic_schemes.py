@@ -293,6 +293,18 @@ def test_a_route_that_meets_no_scheme_has_a_note_that_others_are_not_known():
     assert stated(3.0) and not stated(0.0)
 
 
+def test_seas_with_schemes_that_the_package_lacks_are_named():
+    """A plan in the Gulf of Finland met "none of the schemes", which read as if none were there."""
+    chart = SimpleNamespace(zones=Zones(lanes=FINISTERRE.lanes))
+    lat, lon = np.array([57.9, 59.2, 59.9, 60.0]), np.array([19.5, 20.5, 23.5, 26.0])
+    route = SimpleNamespace(track=SimpleNamespace(lat=lat, lon=lon))
+    (note,) = lane_notes(chart, route)
+    assert note == (
+        f"Meets none of the {len(TRAFFIC_SCHEMES)} traffic separation schemes of the package. The "
+        "charts have others in or off the Gulf of Finland: keep their lanes by the chart."
+    )
+
+
 def test_voyages_to_brest_use_the_inshore_zone_off_ushant():
     """The Chenal du Four leads through it; a ship of 26 m from Falmouth went 24 nm round it."""
     ushant = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Off Ushant")

@@ -131,7 +131,7 @@ class Ports:
         Names are entered with and without the word for "port".
         """
         by_name: dict[str, dict[Port, bool]] = defaultdict(dict)
-        for name, port, own in self._names():
+        for name, port, own in self.names():
             normalised = normalised_port_name(name)
             by_name[normalised][port] = own or by_name[normalised].get(port, False)
             place = place_name(normalised)
@@ -140,7 +140,7 @@ class Ports:
         by_name.pop("", None)
         return dict(by_name)
 
-    def _names(self) -> Iterator[tuple[str, Port, bool]]:
+    def names(self) -> Iterator[tuple[str, Port, bool]]:
         """Return every name, its port and whether it is its own; one in brackets is another."""
         for port, others in self._rows:
             for i, name in enumerate(written_names(port.name)):

@@ -10,9 +10,7 @@ from functools import cache, partial
 import numpy as np
 
 from thalweg.chart.approach_choices import line_between
-from thalweg.chart.approaches import (
-    PortApproach,
-)
+from thalweg.chart.approaches import PortApproach
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position, distance, line_length
 from thalweg.core.time import format_time
@@ -256,11 +254,7 @@ def _front_with_approaches(
         )
         comparison = BaselineComparison(routes, values, rows)
     more = np.array(added)[:, None]
-    return replace(
-        front,
-        certain=np.asarray(front.certain) + more,
-        comparison=comparison,
-    )
+    return replace(front, certain=np.asarray(front.certain) + more, comparison=comparison)
 
 
 def _with_approach_lines(plots: PlotContext, context: PlanningContext) -> PlotContext:
@@ -372,17 +366,28 @@ def plan_along_approaches(
         f"{ends[0].name} and {ends[1].name}, at {sailing.speed / KNOT:.1f} kn: weather, tide and "
         "depth are not considered there."
     )
-    notes = [note, *(end.note for end in ends if end.note), *context.needs.notes]
+    approaches = [end.approach for end in ends if end.approach is not None]
+    note += "".join(unknown_depth_text(one, float(context.ship.draught)) for one in approaches)
+    notes = [note, *_shared_line_notes(context, approaches, line), *(end.note for end in ends)]
     return Plan(
         voyage=voyage,
         routes=(route,),
         proof=Proof(value, _NO_CHOICE, value),
         rejections={},
-        notes=tuple(dict.fromkeys(notes)),
+        notes=tuple(dict.fromkeys(filter(None, [*notes, *context.needs.notes]))),
         provenance=provenance(context, list(ends), [], [sailing.speed / KNOT]),
         plot_context=PlotContext(none, none, none, context.chart, context.sea, context.ship),
         front=front,
     )
+
+
+def _shared_line_notes(
+    context: PlanningContext, approaches: list[PortApproach], line: tuple[Position, ...]
+) -> list[str]:
+    """Return notes on ports, passages and bridges along a line that are too small for the ship."""
+    too_shallow = [port_depth_note(one, float(context.ship.draught)) for one in approaches]
+    whole = replace(approaches[-1], line=line)
+    return too_shallow + approach_limit_notes(context.chart, whole, ship_dimensions(context.ship))
 
 
 def _in_canal_text(approach: PortApproach) -> str:

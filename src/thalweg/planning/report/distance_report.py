@@ -22,7 +22,7 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals
 #: Ways without a draught have a note where they do not keep off water shallower than this [m].
 LEAST_DEPTH: Final = 2.5
 SHOAL_DETOUR: Final = "Keeps off shoal water"  #: a note on a way that is longer so begins so
-_CLEARLY_LONGER: Final = 0.05  # share of the way that it is longer ...
+_CLEARLY_LONGER: Final = 0.03  # share of the way that it is longer ...
 _MANY_MILES: Final = 50.0 * NAUTICAL_MILE  # ... or so much
 #: Ways so much longer than the straight line, up to so long [m], may miss a channel.
 _ROUNDABOUT: Final = 2.5

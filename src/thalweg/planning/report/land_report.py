@@ -287,10 +287,20 @@ def shoal_detour_notes_of_plan(context: PlanningContext, route: Route) -> list[s
     lat, lon = np.asarray(route.track.lat), np.asarray(route.track.lon)
     ends = [Endpoint("", float(lat[k]), float(lon[k]), 0.0) for k in (at_sea[0], at_sea[-1] + 1)]
     seas = replace(Seaways.of_ship_chart(chart), shoals=shoals)
+    offing, closed = chart.offing.distance, chart.zones.closed_shoals
     try:
-        return list(shoal_detour_notes(seas, ends, offing=chart.offing.distance))
-    except InputError:  # an end that the chart of all seas has on land
+        notes = shoal_detour_notes(seas, ends, offing=offing)
+        if notes or closed is None:
+            return list(notes)
+        metres = float(np.asarray(route.legs["length"])[at_sea].sum())
+        notes = shoal_detour_notes(seas, ends, offing=offing, length=metres)
+        if not notes:
+            return []
+        way = np.array(replace(seas, shoals=None).path(*ends, offing=offing))
+    except (InputError, NoRouteError):  # an end that the chart of all seas has on land
         return []
+    lat, lon, _leg = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
+    return list(notes) if closed.contains(lat, lon).any() else []
 
 
 def saved_length(route: Route, way: NarrowWay) -> float:

@@ -8,8 +8,9 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.chart.zones.missing_schemes import seas_with_other_schemes
 from thalweg.chart.zones.traffic_schemes import INSHORE, PORT_RADIUS, TRAFFIC_SCHEMES
-from thalweg.core.geodesy import distance
+from thalweg.core.geodesy import densify, distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import Network
@@ -20,6 +21,7 @@ AGAINST_TRAFFIC: Final = "Runs against the traffic"  #: a note on such miles beg
 INSHORE_USED: Final = "Uses the inshore traffic zone"  #: a note on such miles begins so
 LANE_DETOUR: Final = "Keeping out of"  #: a note on a detour by lanes and inshore zones begins so
 _KEPT_OUT: Final = {False: "opposite lane", True: "inshore traffic zone"}
+_STEP: Final = 2.0 * NAUTICAL_MILE  # of positions along a route
 _LEAST: Final = 2.0 * NAUTICAL_MILE  # shorter stretches in a scheme are crossings
 _LONG_DETOUR: Final = 5.0 * NAUTICAL_MILE  # detours are stated from this length ...
 _LARGE_DETOUR: Final = 0.03  # ... or this share of the shortest way
@@ -46,12 +48,12 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
     kept = [s.name for s in TRAFFIC_SCHEMES if along.get(s.name, 0.0) > _LEAST]
     kept = [name for name in kept if name not in wrong]
     notes = []
+    others = _other_schemes_text(route)
     if kept:
         notes.append(
             f"Keeps to starboard of the separation lines of {', '.join(kept)}, not within "
             f"{PORT_RADIUS / NAUTICAL_MILE:.0f} nm of the ends of the voyage: these lines are "
-            "approximate and not charted; lay the route off in the lanes of the chart. Schemes "
-            f"other than the {len(TRAFFIC_SCHEMES)} of the package are not known here."
+            f"approximate and not charted; lay the route off in the lanes of the chart. {others}"
         )
     notes += [
         f"{INSHORE_USED} of {name} for about {metres / NAUTICAL_MILE:.0f} nm: check the route in "
@@ -61,8 +63,8 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
     ]
     if not (along or against or inshore):
         notes.append(
-            f"Meets none of the {len(TRAFFIC_SCHEMES)} traffic separation schemes of the package; "
-            "others are not known here: look for them in the chart."
+            f"Meets none of the {len(TRAFFIC_SCHEMES)} traffic separation schemes of the package. "
+            f"{others}"
         )
     return notes + [
         f"{AGAINST_TRAFFIC} of {name}, or within a quarter of a lane of its separation zone, for "
@@ -70,6 +72,16 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
         "route in the chart."
         for name, metres in wrong.items()
     ]
+
+
+def _other_schemes_text(route: Route) -> str:
+    """Return a sentence on the schemes along a route that the package does not have."""
+    lat, lon, _leg = densify(*_positions(route), _STEP)
+    seas = seas_with_other_schemes(lat, lon)
+    if not seas:
+        return "Others are not known here: look for them in the chart."
+    listed = " and ".join([", ".join(seas[:-1]), seas[-1]][not seas[:-1] :])
+    return f"The charts have others in or off {listed}: keep their lanes by the chart."
 
 
 def lane_detour_notes(

@@ -125,7 +125,7 @@ def _matching(text: str) -> list[Port]:
 
 @cache
 def _searched_names() -> list[tuple[Port, str]]:
-    named = [(port, normalised_port_name(port.name)) for port in PORTS.all]
+    named = [(port, normalised_port_name(name)) for name, port, _own in PORTS.names()]
     shown = [(port, normalised_port_name(port.display_name)) for port in PORTS.all]
     return list(dict.fromkeys(named + shown))
 
