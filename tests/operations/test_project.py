@@ -692,6 +692,15 @@ def test_no_sea_is_never_assumed():
         open_project_inputs(Project.from_dict(example(sea=None)))
 
 
+def test_a_calm_sea_has_to_be_asked_for_and_has_no_tides():
+    _ship, sea, _chart = open_project_inputs(Project.from_dict(example(sea="calm", coast="none")))
+    assert not sea.sample(["eastward_sea_water_velocity"], 0.0, 51.0, 3.0)[
+        "eastward_sea_water_velocity"
+    ].any()
+    with pytest.raises(InputError, match="tides is given for the calm sea"):
+        open_project_inputs(Project.from_dict(example(sea="calm", tides=True)))
+
+
 @pytest.mark.slow
 def test_command_line(tmp_path, capsys):
     path = tmp_path / "small.yaml"

@@ -47,6 +47,17 @@ def test_the_way_that_closes_last_is_named():
     ]
 
 
+def test_a_passage_too_small_at_any_draught_is_not_named_where_less_draught_is_enough():
+    """The Little Belt has no largest draught; it was named for its bridge."""
+    hull = {
+        "length_overall_m": 292.0, "breadth_m": 45.0, "draught_m": 18.2, "air_draught_m": 50.0,
+    }  # fmt: skip
+    large = Ship.from_dict({"name": "cape size", "hull": hull, "speeds_kn": [12.0]})
+    with pytest.raises(NoPathError, match=r"the draught of 18.2 m is over the 15 m") as refused:
+        sea_distance("Skagen", "Rostock", ship=large)
+    assert refused.value.details["closed"] == ["Great Belt (Route T)", "Fehmarn Belt"]
+
+
 def test_a_distance_advises_what_it_can_do():
     """It advised --open, which no distance takes for a draught."""
     with pytest.raises(NoPathError) as refused:

@@ -301,8 +301,11 @@ def test_the_parts_of_a_cost_are_stated_where_there_are_several(answer):
     legs = dict(answer.best.legs)
     legs |= {"cost_of_fuel": np.array([1200.0]), "cost_of_time": np.array([3400.4])}
     legs |= {"cost": np.array([4600.4]), "cost_of_eu_allowances": np.array([np.nan])}
+    legs |= {"fuel": np.array([4000.0]), "waiting_fuel": np.array([0.0])}
     route = replace(answer.best, legs=legs, prices={"currency": "USD"})
     assert cost_text(route, []).startswith("4,600 USD (fuel 1,200, time 3,400)")
+    unburnt = replace(route, legs=legs | {"fuel": np.array([np.nan])})
+    assert cost_text(unburnt, []).startswith("4,600 USD (propulsion 1,200, time 3,400)")
     legs["cost_of_time"] = np.array([0.0])
     assert "(" not in cost_text(replace(route, legs=legs), [])
 

@@ -68,6 +68,9 @@ def test_health_ships_and_ports(client):
     assert best["locode"] == "NLRTM"
     listed = client.get("/api/v1/ports", params={"q": "Dover"}).json()
     assert listed[0]["label"] == "Dover Harbor, GB"  # as the name alone is understood
+    for beginning in ("hodeid", "hudayd", "al ahm"):  # names of one port
+        found = client.get("/api/v1/ports", params={"q": beginning}).json()
+        assert "Hodeidah, YE" in [port["label"] for port in found]
     near = client.get("/api/v1/ports", params={"near": "51.9,4.1", "count": 3}).json()
     assert [p["distance_nm"] for p in near] == sorted(p["distance_nm"] for p in near)
 

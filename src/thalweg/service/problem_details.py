@@ -305,6 +305,8 @@ def _fault_of_shape(first: Any, model: type[BaseModel] | None = None) -> Service
     if first["type"] in _BOUNDS:
         what = f"is {shortened_repr(first['input'])}"
         possible = _BOUNDS[first["type"]].format(**first.get("ctx") or {})
+        if first["type"] == "string_type" and place[-1:] == ["ship"]:
+            possible = "It is the id of a ship (GET /ships lists them, POST /ships adds a file)."
     if first["type"] == "string_pattern_mismatch":
         kind = next((part for part in reversed(place) if not part.isdigit()), "")
         known = _FORMS.get(kind, f"a text of the pattern {first['ctx']['pattern']}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from os import PathLike
 from pathlib import Path
@@ -86,7 +86,8 @@ def open_project_inputs(project: Project) -> tuple[Ship, Sea, Chart]:
         return ship, _sea(project.data_sources), _chart(project.data_sources, None)
     from thalweg.operations.examples.estuary import synthetic_estuary
 
-    _check_estuary_sources(project.data_sources)
+    why = "The estuary has its own tides and coast, and no files."
+    _check_unused(project.data_sources, ("map", "fill", "tides", "coast"), ESTUARY, why)
     estuary = synthetic_estuary()
     return ship, estuary.sea, _chart(project.data_sources, estuary.chart)
 
@@ -98,11 +99,16 @@ def _sea(sources: Mapping[str, Any]) -> Sea:
     if not files or not all(files):
         raise InputError(
             "The project names no sea.",
-            f"sea: is a file, a list of files, or {ESTUARY}.",
+            f"sea: is a file, a list of files, calm, or {ESTUARY}.",
             "Add it: Thalweg never assumes weather and tides.",
             field="sea",
         )
-    _check_names("sea", files, f"It is a file, a list of files, or {ESTUARY}.")
+    _check_names("sea", files, f"It is a file, a list of files, calm, or {ESTUARY}.")
+    if files == ["calm"]:
+        _check_unused(
+            sources, ("map", "fill", "tides"), "calm sea", "It has no tides and no files."
+        )
+        return Sea.calm()
     if not (mapping is None or isinstance(mapping, Mapping)):
         raise InputError(
             f"map is {mapping!r}.",
@@ -133,13 +139,13 @@ def _check_names(what: str, given: list[Any], possible: str) -> None:
         )
 
 
-def _check_estuary_sources(sources: Mapping[str, Any]) -> None:
-    """Raise `InputError` for entries that have no effect on the synthetic estuary."""
-    for what in ("map", "fill", "tides", "coast"):
+def _check_unused(sources: Mapping[str, Any], entries: Sequence[str], sea: str, why: str) -> None:
+    """Raise `InputError` for entries that have no effect on a sea."""
+    for what in entries:
         if sources.get(what) not in (None, False, "none"):
             raise InputError(
-                f"{what} is given for the {ESTUARY}.",
-                "The estuary has its own tides and coast, and no files.",
+                f"{what} is given for the {sea}.",
+                why,
                 f"Omit {what}, or name your own sea.",
                 field=what,
             )

@@ -43,6 +43,8 @@ _MUCH_WAITING = 0.15  # share of the time from which the loads of all cycles are
 _MAX_BISECTIONS = 24  # of a depth; accurate to a millimetre
 _MAX_DEPTH = 200.0  # [m]
 
+_NO_FUEL = "Fuel, energy and CO2 are not known: the ship file has no fuel."
+
 
 class _Watch(NamedTuple):
     """What is called while a project is simulated."""
@@ -133,9 +135,9 @@ def run_project(
         else:
             if base.feasible and _takes_longer(optimised, base):
                 optimised = _no_slower_run(project, environment, site_network, optimised, base)
-    return ProjectResult(
-        project, environment, optimised, base, _provenance(environment, site_network)
-    )
+    has_fuel = optimised.totals["fuel_t"] is not None
+    origin = _provenance(environment, site_network, has_fuel=has_fuel)
+    return ProjectResult(project, environment, optimised, base, origin)
 
 
 def _no_slower_run(
@@ -371,7 +373,9 @@ def _bottleneck(site_network: SiteNetwork, depth: float) -> tuple[Position, floa
     return (float(network.lat[node]), float(network.lon[node])), when
 
 
-def _provenance(environment: ProjectEnvironment, site_network: SiteNetwork) -> dict[str, Any]:
+def _provenance(
+    environment: ProjectEnvironment, site_network: SiteNetwork, *, has_fuel: bool
+) -> dict[str, Any]:
     from importlib.metadata import version
 
     network = site_network.network
@@ -386,5 +390,5 @@ def _provenance(environment: ProjectEnvironment, site_network: SiteNetwork) -> d
             "edges": int(network.n_edges),
             "rings": environment.sites.network.rings,
         },
-        "assumptions": list(environment.needs.notes),
+        "assumptions": [*environment.needs.notes, *([] if has_fuel else [_NO_FUEL])],
     }

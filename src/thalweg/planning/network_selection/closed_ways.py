@@ -42,7 +42,7 @@ def closed_way_error(
     for start, goal in pairwise(ends):
         if _has_way(seas, start, goal):
             continue
-        closed = _closed_on_the_way(seas, start, goal, dimensions.get("draught"))
+        closed = _closed_on_the_way(seas, start, goal, dimensions)
         if closed:
             reasons = {one.name: _restriction(one, **dimensions) for one in closed}
             why = "; ".join(_sentence(one, reasons[one.name]) for one in closed)
@@ -81,12 +81,12 @@ def _has_way(seas: Seaways, start: Endpoint, goal: Endpoint) -> bool:
 
 
 def _closed_on_the_way(
-    seas: Seaways, start: Endpoint, goal: Endpoint, draught: float | None
+    seas: Seaways, start: Endpoint, goal: Endpoint, dimensions: Mapping[str, float | None]
 ) -> list[NarrowWay]:
     """Return what is closed on the shortest way with all of it open, and has no way round it."""
-    world = world_chart()
+    world, draught = world_chart(), dimensions.get("draught")
     try:
-        line = _with_least_change(seas, start, goal, draught).graph_path(start, goal)
+        line = _with_least_change(start, goal, dimensions).graph_path(start, goal)
     except NoRouteError:
         return []
     lat, lon = np.array(line).T
@@ -109,14 +109,23 @@ def _closed_on_the_way(
 
 
 def _with_least_change(
-    seas: Seaways, start: Endpoint, goal: Endpoint, draught: float | None
+    start: Endpoint, goal: Endpoint, dimensions: Mapping[str, float | None]
 ) -> Seaways:
-    """Return all of the world, without what asks for more change of the draught [m] than it must.
+    """Return all of the world, without what asks for more change of the ship than it must.
 
-    Of the ways that are open at a smaller draught, those of the largest one are left.
+    What is too small at any draught is left out where a smaller draught opens a way. Of the ways
+    that are open at a smaller draught, those of the largest one are left.
     """
     world = Seaways(world_chart())
     every: list[NarrowWay] = [*world.chart.canals, *world.chart.passages]
+    draught = dimensions.get("draught")
+    if draught:
+        unloaded = {**dimensions, "draught": None}
+        large_enough = world
+        for one in every:
+            if _restriction(one, **unloaded):
+                large_enough = large_enough.without(one.name)
+        world = large_enough if _has_way(large_enough, start, goal) else world
     shallow = [one for one in every if draught and one.max_draught < draught]
     limits = sorted({one.max_draught for one in shallow}, reverse=True)
 

@@ -155,8 +155,7 @@ def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     word = "of it " if route.currency == "USD" else "without "
     paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
     prices = prices_text(route.prices)
-    inside = (route.prices or {}).get("fuel_in_eca_per_t") or {}
-    outside = (route.prices or {}).get("fuel_per_t") or {}
+    inside, outside = ((route.prices or {}).get(f"fuel{k}_per_t") or {} for k in ("_in_eca", ""))
     if route.fuel_eca_t and outside.get("value") and inside.get("value") == outside["value"]:
         prices += "; no dearer fuel in control areas, where at most 0.10 % of sulphur is allowed"
     amount = amount_text(route.cost, route.currency) + _parts_text(route)
@@ -176,7 +175,8 @@ def _why_unknown(route: Route, usual: str) -> str:
 def _parts_text(route: Route) -> str:
     """Return the parts of a cost but canal dues, where there are two or more."""
     parts = [(n, v) for n, v in route.cost_parts.items() if v is not None and n != "canal dues"]
-    known = {name: value for name, value in parts if value >= 0.5}
+    own = {"fuel": "propulsion"} if route.fuel_t is None else {}  # priced by speed
+    known = {own.get(name, name): value for name, value in parts if value >= 0.5}
     if len(known) < 2:
         return ""
     return f" ({', '.join(f'{name} {value:,.0f}' for name, value in known.items())})"

@@ -213,7 +213,8 @@ def _missing_file_error(path: Path) -> InputError:
     folder = path.parent
     from thalweg.core.errors import close_matches
 
-    near = close_matches(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else []
+    files = [p.name for p in folder.iterdir() if not p.is_dir()] if folder.is_dir() else []
+    near = close_matches(path.name, files)
     return InputError(
         f"There is no file {shortened_repr(str(path), 200)}.",
         f"The folder {'exists' if folder.is_dir() else 'does not exist either'}.",
