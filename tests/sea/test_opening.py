@@ -12,6 +12,7 @@ from thalweg.core.time import format_time
 from thalweg.sea import Sea
 from thalweg.sea.tides.constituent_files import write_constituents
 from thalweg.sea.tides.constituents import Constituents
+from thalweg.sea.tides.station_area import BETWEEN_TURNS
 
 LEVEL = "sea_surface_height_above_geopotential_datum"
 
@@ -57,7 +58,7 @@ def test_tides_and_files_keep_their_order_of_priority(tmp_path, first) -> None:
 
 def test_the_tide_of_one_station_is_refused_with_what_to_do(tmp_path) -> None:
     write_constituents(constants(1), tmp_path / "gauge.json")
-    with pytest.raises(InputError, match=r"one station.*area="):
+    with pytest.raises(InputError, match=r"one station.*@SOUTH,NORTH,WEST,EAST"):
         Sea.open(tmp_path / "gauge.json")
 
 
@@ -68,8 +69,53 @@ def test_a_series_of_one_station_is_refused_with_what_to_do(tmp_path, header) ->
         values = ",".join(["0.5"] * header.count(","))
         rows.append(f"{format_time(hydro.T0 + 3600.0 * hour)},{values}")
     (tmp_path / "gauge.csv").write_text("\n".join(rows))
-    with pytest.raises(InputError, match=r"series of one station.*tides analyse"):
+    with pytest.raises(InputError, match=r"series of one station.*gauge.csv@SOUTH.*tides analyse"):
         Sea.open(tmp_path / "gauge.csv")
+
+
+def station_file(path, times, levels, name="water_level"):
+    rows = [f"{format_time(t)},{level}" for t, level in zip(times, levels)]
+    path.write_text("\n".join([f"time,{name}", *rows]))
+    return f"{path}@51.0,52.0,3.0,4.5"
+
+
+def test_a_record_of_one_station_holds_in_its_area(tmp_path) -> None:
+    times = hydro.T0 + 3600.0 * np.arange(48.0)
+    sea = Sea.open(station_file(tmp_path / "gauge.csv", times, 0.1 * np.arange(48.0)))
+    got = sea.sample([LEVEL], hydro.T0 + 5400.0, [51.0, 51.6, 52.5], [3.0, 4.4, 4.0])[LEVEL]
+    assert got[:2] == pytest.approx(0.15)
+    assert np.isnan(got[2])
+    assert sea.assumptions == ()
+
+
+def test_between_high_and_low_water_the_level_follows_half_a_cosine(tmp_path) -> None:
+    hours = np.array([0.0, 6.2, 12.4, 18.7])
+    source = station_file(tmp_path / "table.csv", hydro.T0 + 3600.0 * hours, [4.0, 1.0, 4.2, 0.8])
+    sea = Sea.open(source)
+    asked = np.array([0.0, 3.1, 6.2, 9.3, 12.4, 12.4 + 6.3 / 3.0])
+    got = sea.sample([LEVEL], hydro.T0 + 3600.0 * asked, 51.5, 3.5)[LEVEL]
+    assert got == pytest.approx([4.0, 2.5, 1.0, 2.6, 4.2, 4.2 - 0.25 * 3.4], abs=2e-3)
+    assert sea.assumptions == (BETWEEN_TURNS,)
+
+
+def test_constituents_of_one_station_hold_in_their_area(tmp_path) -> None:
+    write_constituents(constants(1), tmp_path / "gauge.json")
+    sea = Sea.open(f"{tmp_path / 'gauge.json'}@51,52,3,4.5")
+    times = hydro.T0 + 3600.0 * np.arange(30.0)
+    got = sea.sample([LEVEL], times, 51.5, 3.5)[LEVEL]
+    expected = Sea.from_tides(constants(1), area=(51.0, 52.0, 3.0, 4.5))
+    assert got == pytest.approx(expected.sample([LEVEL], times, 51.2, 4.0)[LEVEL])
+
+
+def test_areas_that_are_none_and_files_that_are_missing_are_refused(tmp_path) -> None:
+    source = station_file(tmp_path / "gauge.csv", hydro.T0 + 600.0 * np.arange(9.0), np.ones(9))
+    with pytest.raises(InputError, match="not a valid box"):
+        Sea.open(source.replace("51.0,52.0", "52.0,51.0"))
+    with pytest.raises(DatasetError, match=r"other.csv cannot be read"):
+        Sea.open(source.replace("gauge", "other"))
+    back = hydro.T0 + 600.0 * np.array([0.0, 2.0, 1.0])
+    with pytest.raises(InputError, match="times that do not increase"):
+        Sea.open(station_file(tmp_path / "back.csv", back, [1.0, 2.0, 3.0]))
 
 
 def test_other_text_is_still_no_data(tmp_path) -> None:

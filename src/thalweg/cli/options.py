@@ -226,7 +226,8 @@ def add_sea_options(parser: argparse.ArgumentParser) -> None:
         action="extend",
         metavar="FILE",
         help="met-ocean files (NetCDF, GRIB, Zarr); where they overlap, the first has priority; "
-        "'storm': the modelled storm of the package",
+        "'storm': the modelled storm of the package; FILE@SOUTH,NORTH,WEST,EAST: the tide of one "
+        "station (record, tide table or constituents) in a box of degrees",
     )
     add_mapping_option(sea)
     sea.add_argument(

@@ -65,9 +65,9 @@ class Sea:
         curvilinear grids, projected grids, and UGRID meshes with values at nodes or faces. Files
         with the same layout that follow each other in time become one layer; otherwise the first
         file has priority over the second. Of vertical levels the one nearest to the surface is
-        used, of wind the one at 10 m. A dimension of members (number, realization, ...) makes an
-        ensemble. A file of tidal constituents at three nodes or more, such as ``thalweg tides
-        analyse`` writes for a model run, gives the tide at any date.
+        used, of wind the one at 10 m. A dimension of members makes an ensemble. Constituents at
+        three nodes or more give the tide at any date; those of one station, its record or its tide
+        table hold in a box [deg]: ``FILE@SOUTH,NORTH,WEST,EAST``.
 
         Variables are recognised by CF standard name, otherwise by the names that ECMWF, GFS, CMEMS,
         MET Norway, DHI, 52North, NEMO, COADS, Delft3D-FM, SCHISM, FVCOM and ROMS use. Units are
@@ -104,7 +104,7 @@ class Sea:
             If a file is damaged, truncated, not data, ambiguous, in impossible units, or has a
             layout that cannot be used (points, lines, climatologies); the message gives the reason.
         """
-        return cls(layers_of_sources(paths, mapping, draught_m))
+        return cls(*layers_of_sources(paths, mapping, draught_m))
 
     @classmethod
     def ensemble(

@@ -298,7 +298,10 @@ def _with_files_beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:
     def found(name: Any) -> Any:
         if isinstance(name, (list, tuple)):
             return [found(one) for one in name]
+        from thalweg.sea.tides.station_area import split_area
+
         near = folder / name if isinstance(name, str) else None
-        return str(near) if near is not None and near.exists() else name
+        file = None if near is None else split_area(str(near))[0]
+        return str(near) if file is not None and Path(file).exists() else name
 
     return {k: found(v) if k in ("sea", "depth", "zones", "ship") else v for k, v in data.items()}

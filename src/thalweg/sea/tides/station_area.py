@@ -1,0 +1,122 @@
+"""The tide of one station in a box of latitude and longitude: constituents, series and tide tables.
+
+Such a source is written ``FILE@SOUTH,NORTH,WEST,EAST`` [deg]. Every place in the box has the water
+level and the current of the station.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.bounding_box import BoundingBox
+from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR, MINUTE
+from thalweg.sea import standard_names as nm
+from thalweg.sea.argument_checks import parse_area
+from thalweg.sea.files.file_opener import open_layers
+from thalweg.sea.layer import Layer
+from thalweg.sea.tides.constituent_files import is_constituent_file, read_constituents
+from thalweg.sea.tides.tidal_layer import tidal_layers
+from thalweg.sea.tides.tide_records import TideRecord, read_record
+
+#: What states that the heights between high and low waters of a table are assumed.
+BETWEEN_TURNS: Final = "Between high and low water the level is assumed to follow half a cosine."
+_NUMBER: Final = r"[-+]?\d+(?:\.\d*)?"
+_WITH_AREA: Final = re.compile(rf"(.+)@({_NUMBER}(?:,{_NUMBER}){{3}})\Z", re.S)
+_LEAST_BETWEEN_TURNS: Final = 2.5 * HOUR  # of the tide, from high to low water
+_STEP: Final = 10.0 * MINUTE  # of the curve between high and low water
+
+
+def split_area(source: Any) -> tuple[Any, BoundingBox | None]:
+    """Return a source without its area, and the area; None for a source without one.
+
+    Raises
+    ------
+    InputError : If the four numbers are no box.
+    """
+    if not isinstance(source, (str, os.PathLike)) or Path(source).exists():
+        return source, None
+    found = _WITH_AREA.match(os.fspath(source))
+    if found is None:
+        return source, None
+    south, north, west, east = (float(number) for number in found[2].split(","))
+    return found[1], parse_area((south, north, west, east))
+
+
+def station_layers(path: Path, area: BoundingBox) -> tuple[tuple[Layer, ...], tuple[str, ...]]:
+    """Return the layers of the tide of one station in an area, and what was assumed.
+
+    Parameters
+    ----------
+    path : Constituents of one station, or a record (`thalweg.sea.tides.tide_records`). A record of
+        water level whose steps are at least 2.5 hours and whose level rises and falls in turn is a
+        table of high and low waters.
+
+    Raises
+    ------
+    InputError : If the file has several stations, or a record has fewer than two times.
+    DatasetError : If the file cannot be read.
+    """
+    if is_constituent_file(path):
+        return tidal_layers(read_constituents(path), area=area), ()
+    record = read_record(path)
+    if len(record.times) < 2 or not (np.diff(record.times) > 0.0).all():
+        raise InputError(
+            f"{path.name} has {len(record.times)} times, or times that do not increase.",
+            "A series of one station has two times or more, each after the one before.",
+            "Correct the file.",
+            file=str(path),
+        )
+    turns = _has_only_turns(record)
+    times, series = _between_turns(record) if turns else (record.times, record.series)
+    return tuple(open_layers((_dataset(times, series, area),), None, None)), (
+        (BETWEEN_TURNS,) if turns else ()
+    )
+
+
+def _has_only_turns(record: TideRecord) -> bool:
+    """Return whether a record holds high and low waters alone."""
+    if set(record.series) != {nm.WATER_LEVEL} or len(record.times) < 3:
+        return False
+    rise = np.sign(np.diff(record.series[nm.WATER_LEVEL]))
+    alternate = bool((rise[1:] * rise[:-1] == -1.0).all())
+    return alternate and float(np.diff(record.times).min()) >= _LEAST_BETWEEN_TURNS
+
+
+def _between_turns(record: TideRecord) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return times and levels along half a cosine from each high or low water to the next."""
+    turn, level = record.times, record.series[nm.WATER_LEVEL]
+    inside = np.arange(turn[0], turn[-1], _STEP)
+    times = np.unique(np.concatenate([inside, turn]))
+    before = np.clip(np.searchsorted(turn, times, side="right") - 1, 0, len(turn) - 2)
+    share = (times - turn[before]) / (turn[before + 1] - turn[before])
+    weight = 0.5 - 0.5 * np.cos(np.pi * share)
+    return times, {nm.WATER_LEVEL: level[before] + weight * (level[before + 1] - level[before])}
+
+
+def _dataset(times: FloatArray, series: dict[str, FloatArray], area: BoundingBox) -> Any:
+    """Return a grid of two by two nodes with the same values at all."""
+    import xarray as xr
+
+    axes = ("time", "latitude", "longitude")
+    units = {name: "m" if name == nm.WATER_LEVEL else "m s-1" for name in series}
+    variables = {
+        name: (
+            axes,
+            np.broadcast_to(values[:, None, None], (len(times), 2, 2)).copy(),
+            {"standard_name": name, "units": units[name]},
+        )
+        for name, values in series.items()
+    }
+    where = {
+        "time": np.round(times * 1e3).astype("datetime64[ms]").astype("datetime64[ns]"),
+        "latitude": [area.south, area.north],
+        "longitude": [area.west, area.east],
+    }
+    return xr.Dataset(variables, where)
