@@ -1,4 +1,7 @@
-"""The geodesic grid of a coastline: nodes and legs that touch no land, cached on disk."""
+"""The geodesic grid of a coastline: nodes and legs that touch no land, cached on disk.
+
+The grid's shape is that of a sphere; its lengths are those of the ellipsoid.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,7 @@ from numpy.typing import NDArray
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.geojson_polygons import rings_from_polygons
 from thalweg.core.arrays.array_cache import load_or_make, remove_oldest
+from thalweg.core.arrays.sphere_vectors import spherical_positions
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
@@ -231,15 +235,6 @@ def _crossing_test(index: IndexArrays) -> CrossingTest:
         return answer
 
     return crossed
-
-
-def spherical_positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return latitude and longitude [deg] of unit vectors (n, 3), taken for a sphere's.
-
-    The grid's shape is that of the sphere; its lengths are those of the ellipsoid.
-    """
-    x, y, z = vectors.T
-    return np.degrees(np.arctan2(z, np.hypot(x, y))), np.degrees(np.arctan2(y, x))
 
 
 def _merge_pairs(
