@@ -86,7 +86,7 @@ def _closed_on_the_way(
     """Return what is closed on the shortest way with all of it open, and has no way round it."""
     world = world_chart()
     try:
-        line = _with_least_change(seas, start, goal, draught).graph_path(start, goal)
+        line = _with_least_change(start, goal, draught).graph_path(start, goal)
     except NoRouteError:
         return []
     lat, lon = np.array(line).T
@@ -108,9 +108,7 @@ def _closed_on_the_way(
     return _without_ways_round(closed, found, start, goal)
 
 
-def _with_least_change(
-    seas: Seaways, start: Endpoint, goal: Endpoint, draught: float | None
-) -> Seaways:
+def _with_least_change(start: Endpoint, goal: Endpoint, draught: float | None) -> Seaways:
     """Return all of the world, without what asks for more change of the draught [m] than it must.
 
     Of the ways that are open at a smaller draught, those of the largest one are left.
