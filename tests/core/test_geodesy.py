@@ -178,3 +178,11 @@ def test_length_of_a_line():
     legs = [float(geodesy.distance(*a, *b)) for a, b in itertools.pairwise(line)]
     assert geodesy.line_length(line) == pytest.approx(sum(legs))
     assert geodesy.line_length(line[:1]) == geodesy.line_length([]) == 0.0
+
+
+def test_positions_along_many_geodesics_are_those_along_each():
+    ends = np.array([[50.0, -10.0, 52.0, -3.0], [-5.0, 179.0, 5.0, -179.0]])
+    share = np.array([0.25, 0.5])
+    lat, lon = geodesy.positions_along(*ends.T, share)
+    for k, end in enumerate(ends):
+        assert (lat[k], lon[k]) == geodesy.positions_along(*end, share[k])

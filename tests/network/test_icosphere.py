@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
+from thalweg.core.arrays.sphere_vectors import spherical_positions
 from thalweg.kernels.network.graph_building import directed_edges_of_pairs
 from thalweg.network.global_grid.grid import (
     GridResolution,
     _gaps,
     _geodesic_grid,
     make_grid,
-    spherical_positions,
 )
 from thalweg.network.global_grid.icosphere import RefinementRule, icosphere
 

@@ -45,10 +45,10 @@ def test_shoals_of_a_draught_are_read_from_disk_the_next_time(tmp_path, monkeypa
         with monkeypatch.context() as patch:
             patch.setattr(SeaGraph, "shoal_excess", None)
             np.testing.assert_array_equal(edge_excess(chart, shoals), first)
-    assert len(list(folder.glob("*-shoals-*.npy"))) == 2
+    assert len(list(folder.glob("*-shoals-*.npz"))) == 2
     monkeypatch.setattr(sea_graph_cache, "_DRAUGHTS_KEPT", 2)
     edge_excess(chart, shoals_of_draught(chart, 13.0, 13.0, ends))
-    assert len(list(folder.glob("*-shoals-*.npy"))) == 2
+    assert len(list(folder.glob("*-shoals-*.npz"))) == 2
     clear_memory()
     assert made.target.shape == first.shape
 

@@ -143,9 +143,30 @@ def test_charted_depth_counts():
     assert np.isinf(trip_table([WEST_END, EAST_END], **asked, min_ukc=0.6).duration).all()
 
 
-def test_rudder_drag_slows_a_ship_that_crabs_and_only_then():
+def with_rudder_drag():
     text = dict(vox().data)
-    dragged = Ship.from_dict({**text, "models": {**text["models"], "rudder": "schless_2023"}})
+    return Ship.from_dict({**text, "models": {**text["models"], "rudder": "schless_2023"}})
+
+
+def test_rudder_drag_is_that_of_the_referee():
+    ship, ends, sea = with_rudder_drag(), [WEST_END, EAST_END], sea_of(0.4, 1.5)
+    asked = {"ship": ship, "sea": sea}
+    table = trip_table(ends, departures=Departures(0.0, period=TIDE, step=TIDE), **asked)
+    route = evaluate(ends, depart=0.0, **asked)
+    assert table.duration[0] == pytest.approx(route.arrive - route.depart, rel=1e-5)
+
+
+@pytest.mark.parametrize("ship", [vox, with_rudder_drag])
+def test_a_current_across_that_is_too_strong_is_no_departure(ship):
+    departures = Departures(0.0, period=TIDE, step=TIDE)
+    table = trip_table(
+        [WEST_END, EAST_END], ship=ship(), sea=sea_of(north=9.0), departures=departures
+    )
+    assert np.isposinf(table.duration).all()
+
+
+def test_rudder_drag_slows_a_ship_that_crabs_and_only_then():
+    dragged = with_rudder_drag()
     for north, slower in ((0.0, False), (1.0, True)):
         plain, drag = (
             trip_table(

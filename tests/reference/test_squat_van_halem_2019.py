@@ -75,6 +75,12 @@ def test_zero_speed_stays_zero():
     assert barrass_squat.barrass_squat(0.0, 10.0, block_coefficient=0.8, **HOPPER) == 0.0
 
 
+def test_a_ship_at_rest_that_fills_the_waterway_has_no_squat():
+    at = {"block_coefficient": 0.8, "channel_width": 20.0, **HOPPER}
+    sunk = barrass_squat.barrass_squat([0.0, 1.0, 0.0], [6.0, 6.0, np.nan], **at)
+    assert sunk.tolist() == pytest.approx([0.0, np.inf, np.nan], nan_ok=True)
+
+
 def test_speed_never_falls_with_depth():
     depths = np.linspace(7.0, 60.0, 400)
     assert np.all(np.diff(limit(depths)) >= 0.0)

@@ -45,3 +45,12 @@ def test_waypoints_remain_if_removal_would_cost_more_than_allowed():
     route = score(track)
     fewer = simplified_route(route, score, time_of, most=0.0)
     assert fewer is route
+
+
+def test_a_waypoint_beyond_the_end_of_a_line_is_not_on_it():
+    lat, lon = positions_along(50.0, -10.0, 52.0, -3.0, np.linspace(0.0, 1.0, 60))
+    lat, lon = np.append(lat, lat[-20]), np.append(lon, lon[-20])  # past the goal and back
+    route = score(Track.from_positions(zip(lat, lon), depart=0.0))
+    fewer = simplified_route(route, score, time_of, most=np.inf)
+    assert len(fewer.track.lat) == 3
+    assert fewer.time_h == pytest.approx(route.time_h, rel=1e-6)

@@ -94,3 +94,15 @@ def test_joined_routes_add_up():
     for wrong in ([second, first], [first, first], []):
         with pytest.raises(InputError):
             join(wrong)
+
+
+def test_a_track_along_a_path_waits_where_it_departs_later():
+    lat, lon = np.array([0.0, 0.0, 0.0, 0.0]), np.array([0.0, 1.0, 2.0, 3.0])
+    arrive, depart = [100.0, 300.0, 500.0, 700.0], [160.0, 300.9, 499.9, 900.0]
+    track = Track.along_path(lat, lon, arrive=arrive, depart=depart, setting=2)
+    assert track.depart == 100.0
+    assert track.wait.tolist() == [60.0, 0.0, 0.0, 0.0]
+    assert track.setting.tolist() == [2, 2, 2]
+    assert depart[-1] == 900.0
+    own = Track.along_path(lat, lon, arrive=arrive, depart=depart, setting=[0, 1, 2])
+    assert own.setting.tolist() == [0, 1, 2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -47,6 +48,19 @@ def test_motion_is_unknown_where_the_waves_are():
     waves[:3] = np.nan
     profile = route_profile(replace(route, samples={**route.samples, name: waves}))
     assert profile["weighted_acceleration_m_s2"][:4].count(None) == 3
+
+
+def test_a_wind_of_no_speed_has_no_direction():
+    from thalweg.service.jobs.route_profiles import route_profile
+
+    route, _ = profile_in_waves("gunnerus-2019")
+    east = np.array(route.samples["eastward_wind"], float)
+    east[-2:] = 5.0  # to the east: from the west
+    profile = route_profile(replace(route, samples={**route.samples, "eastward_wind": east}))
+    assert profile["wind_from_deg"][-2:] == [270.0, 270.0]
+    assert set(profile["wind_from_deg"][:-2]) == {None}
+    assert set(profile["waves_from_deg"]) == {0.0}
+    assert "NaN" not in json.dumps(profile)
 
 
 def test_a_ship_that_waits_lies_still_in_the_profile():

@@ -85,6 +85,12 @@ def test_fronts_by_method_have_the_known_indicators():
     assert front_statistics(fronts().assign(front=None), ["method"]).empty
 
 
+@pytest.mark.parametrize("ids", [["0", "1", "2"], [0, 1, 2]], ids=["text", "number"])
+def test_fronts_without_methods_are_those_of_the_default(ids):
+    table = front_statistics(fronts().drop(columns="method").assign(id=ids), ["seed"])
+    assert table["covered_by_default"].tolist() == pytest.approx([0.5, 1.0, 0.5])
+
+
 def test_a_year_of_voyages():
     rows = pd.DataFrame(
         {"ship": ["a", "a"], "time_h": [190.0, 210.0], "distance_nm": [2000.0, 2400.0],

@@ -7,12 +7,11 @@ parts of the same inland sea. They are for planning and are not surveyed.
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position
 
 
@@ -41,8 +40,6 @@ class ApproachBranch:
 @cache
 def approach_branches() -> tuple[ApproachBranch, ...]:
     """Return the branches of the table."""
-    table = resources.files("thalweg.chart").joinpath("data/approach_branches.csv")
-    rows = csv.DictReader(table.read_text(encoding="utf-8").splitlines())
     return tuple(
         ApproachBranch(
             row["name"],
@@ -52,5 +49,5 @@ def approach_branches() -> tuple[ApproachBranch, ...]:
             max_draught=float(row["max_draught_m"] or "inf"),
             max_length=float(row["max_length_m"] or "inf"),
         )
-        for row in rows
+        for row in table_rows("thalweg.chart", "approach_branches.csv")
     )  # fmt: skip

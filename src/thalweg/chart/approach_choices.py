@@ -28,6 +28,7 @@ from thalweg.chart.approaches import (
 from thalweg.chart.canal_parts import ways_through_canals
 from thalweg.chart.canals import Canal
 from thalweg.chart.coast.coastline import Coastline
+from thalweg.chart.coast.snapping import LegTest
 from thalweg.chart.passages import Passage
 from thalweg.core.geodesy import METRES_PER_DEGREE, Position, distance, longitude_difference
 from thalweg.core.types import FloatArray
@@ -149,13 +150,13 @@ def _is_main(approach: PortApproach, branch: ApproachBranch, length: float) -> b
 
 
 def line_between(
-    start: PortApproach, goal: PortApproach, *, legs_blocked: object
+    start: PortApproach, goal: PortApproach, *, legs_blocked: LegTest
 ) -> tuple[Position, ...] | None:
     """Return the line from one berth to another along their approaches, where these meet.
 
     Parameters
     ----------
-    legs_blocked : Test of legs, as of `thalweg.chart.Chart`.
+    legs_blocked : Test of legs (lat1, lon1, lat2, lon2) [deg], as of `thalweg.chart.Chart`.
 
     Returns
     -------
@@ -168,9 +169,7 @@ def line_between(
     for some in np.array_split(order, len(order) // _JOINTS_AT_ONCE + 1):
         far = apart[some] > _SAME_WATER
         free = ~far
-        free[far] = ~legs_blocked(  # type: ignore[operator]
-            *first[i[some[far]], :2].T, *second[j[some[far]], :2].T
-        )
+        free[far] = ~legs_blocked(*first[i[some[far]], :2].T, *second[j[some[far]], :2].T)
         if free.any():
             best = some[np.argmax(free)]
             end = line_part(goal.line, second[j[best], 2])[::-1]

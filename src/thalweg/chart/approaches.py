@@ -11,13 +11,10 @@ surveyed.
 
 from __future__ import annotations
 
-import csv
-import gzip
 import itertools
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 from typing import Final
 
 import numpy as np
@@ -28,6 +25,7 @@ from thalweg.chart.port_limits.port_draughts import port_draughts
 from thalweg.chart.ports import PORTS, Port
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.arrays.numbered_parts import numbered_parts
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import (
     METRES_PER_DEGREE,
     Position,
@@ -278,8 +276,7 @@ class PortApproaches:
     def _rows(self) -> dict[Port, dict[str, str]]:
         """The rows of the table by port."""
         by_key = {(p.locode, p.name, p.country_code): p for p in PORTS.all}
-        packed = resources.files("thalweg.chart") / "data/port_approaches.csv.gz"
-        rows = csv.DictReader(gzip.decompress(packed.read_bytes()).decode().splitlines())
+        rows = table_rows("thalweg.chart", "port_approaches.csv.gz")
         named = ((by_key.get((r["unlocode"], r["name"], r["country_code"])), r) for r in rows)
         return {port: row for port, row in named if port is not None}
 

@@ -11,16 +11,15 @@ route reaches such water. Ice in the data is better.
 from __future__ import annotations
 
 import calendar
-import csv
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.passages import read_line
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position
 
 
@@ -68,9 +67,8 @@ class IceArea:
 
 
 def _read_ice_areas() -> tuple[IceArea, ...]:
-    text = resources.files("thalweg.chart").joinpath("data/ice_areas.csv").read_text("utf-8")
     areas = []
-    for row in csv.DictReader(text.splitlines()):
+    for row in table_rows("thalweg.chart", "ice_areas.csv"):
         first, last = (int(month) for month in row["months"].split("-"))
         outline = read_line(row["outline"])
         areas.append(IceArea(row["name"], first, last, outline, row["source"], row["kind"]))

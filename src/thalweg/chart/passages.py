@@ -11,18 +11,17 @@ hand, as islands divide it. A passage with the use "never" is closed in the char
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 from typing import Final
 
 import numpy as np
 
 from thalweg.chart.canals import CANALS, normalised_canal_name, sizes_over_limits
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position, line_length
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
@@ -219,8 +218,7 @@ def _plain_name(name: str) -> str:
 
 
 def _read_passages() -> tuple[Passage, ...]:
-    text = resources.files("thalweg.chart").joinpath("data/passages.csv").read_text("utf-8")
-    return tuple(_passage_of_row(row) for row in csv.DictReader(text.splitlines()))
+    return tuple(_passage_of_row(row) for row in table_rows("thalweg.chart", "passages.csv"))
 
 
 def _passage_of_row(row: dict[str, str]) -> Passage:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import functools
 import re
 import unicodedata
-from importlib import resources
 from typing import Final, Protocol
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import table_rows
 
 #: Letters that are not a base letter with an accent.
 _LETTER_SUBSTITUTES: Final = str.maketrans(
@@ -126,8 +125,7 @@ def decimal_commas_error(text: str) -> InputError | None:
 @functools.cache
 def _states() -> tuple[dict[str, str], ...]:
     """The rows of ``data/states.csv``: states and provinces, each with a box round its ports."""
-    text = resources.files("thalweg.chart").joinpath("data/states.csv").read_text("utf-8")
-    return tuple(csv.DictReader(text.splitlines()))
+    return tuple(table_rows("thalweg.chart", "states.csv"))
 
 
 class _Located(Protocol):

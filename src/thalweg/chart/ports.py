@@ -7,13 +7,10 @@ the other names that searoute uses, and a few more ports, names and corrections 
 
 from __future__ import annotations
 
-import csv
-import gzip
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
-from importlib import resources
+from functools import cache, cached_property, partial
 from typing import Final
 
 from thalweg.chart.port_names import (
@@ -25,6 +22,7 @@ from thalweg.chart.port_names import (
     written_names,
 )
 from thalweg.core.errors import InputError, close_matches
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -110,13 +108,13 @@ class Ports:
     @cached_property
     def _rows(self) -> list[tuple[Port, str]]:
         """Every port with its other names, separated by semicolons."""
-        tables = (_packed_table("world_port_index.csv.gz"), _table("more_ports.csv"))
+        tables = (_table("world_port_index.csv.gz"), _table("more_ports.csv"))
         return [(_port_from_row(r), r.get("alternate_names", "")) for t in tables for r in t]
 
     @cached_property
     def _not_reached(self) -> frozenset[Port]:
         """The ports that cannot be reached from the sea: they have no approach in the table."""
-        rows = _packed_table("port_approaches.csv.gz")
+        rows = _table("port_approaches.csv.gz")
         keys = {(r["unlocode"], r["name"], r["country_code"]) for r in rows if not r["line"]}
         return frozenset(p for p in self.all if (p.locode, p.name, p.country_code) in keys)
 
@@ -335,14 +333,7 @@ def _unambiguous_name(port: Port, found: Sequence[Port], name: str) -> str:
     return format_position(port.lat, port.lon)
 
 
-def _packed_table(name: str) -> list[dict[str, str]]:
-    packed = resources.files("thalweg.chart").joinpath(f"data/{name}").read_bytes()
-    return list(csv.DictReader(gzip.decompress(packed).decode("utf-8").splitlines()))
-
-
-def _table(name: str) -> list[dict[str, str]]:
-    text = resources.files("thalweg.chart").joinpath(f"data/{name}").read_text(encoding="utf-8")
-    return list(csv.DictReader(text.splitlines()))
+_table = partial(table_rows, "thalweg.chart")
 
 
 @cache
@@ -391,9 +382,8 @@ def country_code_of(text: str) -> str:
 
 @cache
 def _codes_by_name() -> dict[str, str]:
-    table = resources.files("thalweg.chart").joinpath("data/countries.csv")
     codes: dict[str, str] = {}
-    for row in csv.DictReader(table.read_text(encoding="utf-8").splitlines()):
+    for row in _table("countries.csv"):
         names = (row["country_code"], row["name"], *row["other_names"].split(";"))
         codes.update({normalised_port_name(name): row["country_code"] for name in names})
     codes.pop("", None)

@@ -1,16 +1,18 @@
-"""Closed rings of positions, edges straight in longitude and latitude."""
+"""Closed rings of positions, and discs, edges straight in longitude and latitude."""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
 from thalweg.core.types import FloatArray
+from thalweg.core.units import NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
@@ -79,3 +81,23 @@ class Rings:
 def _doubled_area(lat: FloatArray, lon: FloatArray) -> float:
     east, north = lon - lon[0], lat - lat[0]
     return float(np.sum(east[:-1] * north[1:] - east[1:] * north[:-1]))
+
+
+def disc_shape(lat: float, lon: float, radius: float, *, quad_segs: int) -> Any:
+    """Return the polygon, in longitude and latitude, of the positions near one.
+
+    Parameters
+    ----------
+    lat, lon : The middle [deg].
+    radius : Of the disc [m], to a third of a percent; short of 90 degrees of latitude.
+    quad_segs : Edges of a quarter of its circumference.
+
+    Returns
+    -------
+    shapely.Polygon : It may leave [-180, 180].
+    """
+    import shapely
+    import shapely.affinity
+
+    disc = shapely.Point(lon, lat).buffer(radius / (60.0 * NAUTICAL_MILE), quad_segs=quad_segs)
+    return shapely.affinity.scale(disc, 1.0 / max(np.cos(np.radians(lat)), 0.01), 1.0)

@@ -1,8 +1,11 @@
-"""Reading small text files that a user names, with errors that state the cause."""
+"""Reading small text files that a user names, with errors that state the cause, and own tables."""
 
 from __future__ import annotations
 
+import csv
+import gzip
 import os
+from importlib import resources
 from os import PathLike
 from pathlib import Path
 
@@ -52,6 +55,23 @@ def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_00
             "Only text in UTF-8 is read.",
             "Save it as UTF-8.",
         ) from None
+
+
+def table_rows(package: str, name: str) -> list[dict[str, str]]:
+    """Return the rows of a table of this program.
+
+    Parameters
+    ----------
+    package : Package in whose folder ``data`` the table is, such as ``thalweg.chart``.
+    name : Name of the file, ``.csv`` or ``.csv.gz``, in UTF-8.
+
+    Returns
+    -------
+    list of dict : The text of each row by the names of the columns.
+    """
+    content = resources.files(package).joinpath("data", name).read_bytes()
+    text = (gzip.decompress(content) if name.endswith(".gz") else content).decode("utf-8")
+    return list(csv.DictReader(text.splitlines()))
 
 
 def cause_of(error: Exception) -> str:

@@ -225,13 +225,13 @@ def direct(
 
 
 def positions_along(
-    lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
+    lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike, fractions: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
     """Return positions [deg] at fractions of the geodesic from the first to the second.
 
     Parameters
     ----------
-    lat1, lon1, lat2, lon2 : Ends of the geodesic [deg].
+    lat1, lon1, lat2, lon2 : Ends of the geodesic [deg], or of one for each fraction.
     fractions : Fractions of its length from the first end, 0 to 1.
 
     Returns

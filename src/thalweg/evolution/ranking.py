@@ -8,9 +8,8 @@ import numpy as np
 
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.evolution import dominance
+from thalweg.kernels.leg.population_sailing import COST, TIME, VIOLATION
 from thalweg.route.refinement.scored_tracks import feasible_front
-
-TIME, COST, VIOLATION = 0, 1, 2
 
 
 def ranks_and_crowding(scores: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -124,20 +124,11 @@ def measured_pairs(
 LegPositions: TypeAlias = Callable[..., tuple[FloatArray, FloatArray]]
 
 
-def _geodesic_positions(
-    lat: FloatArray, lon: FloatArray, first: Int32Array, second: Int32Array,
-    length: FloatArray, share: FloatArray,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    a, b = lat[first], lon[first]
-    _, course, _ = geodesy.inverse(a, b, lat[second], lon[second])
-    return geodesy.direct(a, b, course, share * length)
-
-
 def evenly_spaced_samples(
     stations: Stations,
     pairs: Pairs,
     spacing: FloatArray | float,
-    positions: LegPositions = _geodesic_positions,
+    positions: LegPositions | None = None,
 ) -> tuple[Stations, Samples]:
     """Sample pairs at new stations on their geodesics, at most ``spacing`` [m] apart.
 
@@ -146,7 +137,7 @@ def evenly_spaced_samples(
     stations : Nodes.
     pairs : Pairs of nodes.
     spacing : Of samples [m].
-    positions : How positions on legs are computed.
+    positions : How positions on legs are computed; None: on their geodesics.
 
     Returns
     -------
@@ -158,8 +149,12 @@ def evenly_spaced_samples(
     of = np.repeat(np.arange(len(pairs.first)), pieces - 1)
     s = (np.arange(len(of)) - ptr[of] + 1) / pieces[of]
     lat, lon = stations.lat, stations.lon
-    ends = pairs.first[of], pairs.second[of]
-    new_lat, new_lon = positions(lat, lon, *ends, pairs.length[of], s)
+    first, second = pairs.first[of], pairs.second[of]
+    if positions is None:
+        ends = lat[first], lon[first], lat[second], lon[second]
+        new_lat, new_lon = geodesy.positions_along(*ends, s)
+    else:
+        new_lat, new_lon = positions(lat, lon, first, second, pairs.length[of], s)
     ids = (len(lat) + np.arange(len(of))).astype(np.int32)
     samples = Samples(ptr, ids, ids.copy(), np.zeros(len(of), np.float32), s.astype(np.float32))
     grown = replace(stations, lat=np.append(lat, new_lat), lon=np.append(lon, new_lon))

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.arrays.sphere_vectors import arc_of_chord
 from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED
 from thalweg.core.geodesy import MEAN_RADIUS, Position, wrap_longitude
 from thalweg.core.types import FloatArray
@@ -72,7 +73,7 @@ def angle_to_point(vectors: FloatArray, point: FloatArray) -> FloatArray:
     """
     difference = vectors - point
     chord = np.sqrt(np.einsum("...k,...k->...", difference, difference))
-    return 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
+    return arc_of_chord(chord)
 
 
 @dataclass(frozen=True)

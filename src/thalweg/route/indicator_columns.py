@@ -153,11 +153,6 @@ def named_columns(legs: Mapping[str, Any], kind: str) -> dict[str, Any]:
     }
 
 
-def first_place(route: RefereedRoute) -> str | None:
-    """Return the place that the objective comfort counts: the first of the ship file."""
-    return next(iter(named_columns(route.legs, "squared_dose")), None)
-
-
 def indicator_value(route: RefereedRoute, name: str, at: str | None = None) -> float:
     """Return one indicator of a route; NaN where it is not known.
 

@@ -159,7 +159,9 @@ def _conditions(route: SailedRoute, at: np.ndarray) -> dict[str, FloatArray]:
             u, v = samples[east], samples[north]
             found[f"{name}_speed_kn"] = np.hypot(u, v) / KNOT
             sense = "from" if origin else "towards"
-            found[f"{name}_{sense}_deg"] = _bearing(-u, -v) if origin else _bearing(u, v)
+            found[f"{name}_{sense}_deg"] = (
+                vector_direction(-u, -v) if origin else vector_direction(u, v)
+            )
     height, period = "sea_surface_wave_significant_height", "sea_surface_wave_period"
     for name, values in samples.items():
         if name == height:
@@ -170,7 +172,17 @@ def _conditions(route: SailedRoute, at: np.ndarray) -> dict[str, FloatArray]:
     return found
 
 
-def _bearing(east: FloatArray, north: FloatArray) -> FloatArray:
-    """Return the direction of a vector [deg from north]; NaN for one of no length."""
+def vector_direction(east: FloatArray, north: FloatArray) -> FloatArray:
+    """Return the directions in which vectors point.
+
+    Parameters
+    ----------
+    east, north : ndarray
+        Components of one shape, in one unit.
+
+    Returns
+    -------
+    ndarray : Clockwise from north [deg], 0 to 360; NaN for a vector of no length.
+    """
     still = (east == 0.0) & (north == 0.0)
     return np.where(still, math.nan, np.degrees(np.arctan2(east, north)) % 360.0)

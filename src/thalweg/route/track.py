@@ -122,6 +122,42 @@ class Track:
         lat, lon = np.array(keep, dtype=float).reshape(-1, 2).T
         return cls(lat, lon, parse_time(depart), None, np.full(max(len(lat) - 1, 0), setting))  # type: ignore[arg-type]
 
+    @classmethod
+    def along_path(
+        cls,
+        lat: FloatArray,
+        lon: FloatArray,
+        *,
+        arrive: ArrayLike,
+        depart: ArrayLike,
+        setting: ArrayLike,
+    ) -> Track:
+        """Return the track of a path that a search found, with its waits.
+
+        A later departure than arrival is a wait. Waits below 1 s are rounding and are left out, and
+        there is none at the last node.
+
+        Parameters
+        ----------
+        lat, lon : ndarray (n,)
+            Nodes of the path [deg].
+        arrive, depart : array_like (n,)
+            Arrival at and departure from the nodes [s since 1970-01-01T00:00Z].
+        setting : array_like
+            Index into the ship's speeds, of all legs or (n - 1,).
+
+        Returns
+        -------
+        Track
+            Through all nodes.
+        """
+        arrived = np.asarray(arrive, float)
+        wait = np.asarray(depart, float) - arrived
+        wait[-1] = 0.0
+        wait = np.where(wait < 1.0, 0.0, wait)
+        settings = np.broadcast_to(np.asarray(setting, np.int64), (len(lat) - 1,))
+        return cls(lat, lon, float(arrived[0]), wait, settings)
+
     def __len__(self) -> int:
         return len(self.lat)
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from thalweg.core.errors import InputError
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.ship.condition_variables import (
     EASTWARD_WIND,
     NORTHWARD_WIND,
@@ -51,8 +55,36 @@ class ShipLimits:
     @property
     def needs(self) -> frozenset[str]:
         """The sea variables that finite limits depend on."""
-        waves = {WAVE_HEIGHT} if math.isfinite(self.wave_height) else set()
-        wind = {EASTWARD_WIND, NORTHWARD_WIND} if math.isfinite(self.wind_speed) else set()
+        needed = frozenset(self.limited_weather)
         if self.safety is not None:
-            waves = {WAVE_HEIGHT, WAVE_EAST, WAVE_NORTH, WAVE_PERIOD}
-        return frozenset(waves | wind)
+            needed |= {WAVE_HEIGHT, WAVE_EAST, WAVE_NORTH, WAVE_PERIOD}
+        return needed
+
+    @property
+    def limited_weather(self) -> tuple[str, ...]:
+        """The sea variables that finite limits of wave height and wind speed depend on, sorted."""
+        waves = (WAVE_HEIGHT,) if math.isfinite(self.wave_height) else ()
+        wind = (EASTWARD_WIND, NORTHWARD_WIND) if math.isfinite(self.wind_speed) else ()
+        return tuple(sorted((*waves, *wind)))
+
+    def keeps_weather_limits(self, sampled: Mapping[str, FloatArray]) -> BoolArray:
+        """Return where waves and wind keep the limits of wave height and wind speed.
+
+        Where they are unknown they do not. Limits of safety in waves are not tested.
+
+        Parameters
+        ----------
+        sampled : The variables of `limited_weather` at least [m], [m/s], of one shape.
+
+        Returns
+        -------
+        bool ndarray : In their shape; True alone where there are no limits.
+        """
+        kept: BoolArray = np.asarray(True)
+        with np.errstate(invalid="ignore"):
+            if math.isfinite(self.wave_height):
+                kept = kept & (sampled[WAVE_HEIGHT] <= self.wave_height)
+            if math.isfinite(self.wind_speed):
+                wind = np.hypot(sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND])
+                kept = kept & (wind <= self.wind_speed)
+        return np.asarray(kept)

@@ -49,7 +49,8 @@ def front_statistics(rows: pd.DataFrame, axes: list[str]) -> pd.DataFrame:
             continue
         reference = every.max(axis=0) + _BEYOND * np.ptp(every, axis=0) + 1e-9
         union = hypervolume(every[non_dominated(every)], reference)
-        methods = group["method"].astype(str) if "method" in group else group["id"] * 0 + "default"
+        unnamed = pd.Series("default", index=group.index)
+        methods = group["method"].astype(str) if "method" in group else unnamed
         for position, (_, row) in enumerate(group.iterrows()):
             volume = hypervolume(fronts[position], reference) if len(fronts[position]) else 0.0
             values = {name: row[name] for name in axes if name in row}

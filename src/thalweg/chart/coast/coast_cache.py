@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.coast.gshhg import CLOSED_CANALS, CLOSED_NARROWS, data_files, read_land_rings
 from thalweg.chart.coast.islets import islet_rings
+from thalweg.core.arrays.array_cache import load_or_make
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.file_writing import replacing_file
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
 CACHE_FORMAT: Final = 3  # increase when the arrays or their construction change
@@ -39,26 +38,18 @@ def gshhg_index(
 
 def load_or_build(path: Path, make: Callable[[], IndexArrays]) -> IndexArrays:
     """Return the index in a file, or make it and write the file; a broken file is replaced."""
-    try:
-        return _load_index(path)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        index = make()
-    with contextlib.suppress(OSError):
-        _save_index(path, index)
-    return index
+    return load_or_make(path, make, pack=_arrays, unpack=_index)
 
 
-def _load_index(path: Path) -> IndexArrays:
-    with np.load(path, allow_pickle=False) as file:
-        arrays = {name: file[name] for name in IndexArrays._fields if name != "side"}
-        index = IndexArrays(side=int(file["side"]), **arrays)
+def _arrays(index: IndexArrays) -> dict[str, NDArray[Any]]:
+    return {name: np.asarray(values) for name, values in index._asdict().items()}
+
+
+def _index(arrays: Mapping[str, NDArray[Any]]) -> IndexArrays:
+    named = {name: arrays[name] for name in IndexArrays._fields if name != "side"}
+    index = IndexArrays(side=int(arrays["side"]), **named)
     rows, vertices = len(index.winding), len(index.first)
     fits = index.cell.shape == (6 * index.side**2,) and index.start.shape == (rows + 1,)
     if not fits or index.xyz.shape != (vertices, 3) or int(index.start[-1]) != vertices:
         raise ValueError("the arrays do not fit together")
     return index
-
-
-def _save_index(path: Path, index: IndexArrays) -> None:
-    with replacing_file(path) as file:
-        np.savez(file, allow_pickle=False, **index._asdict())

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from thalweg.chart.rings import Rings
 from thalweg.core.arrays.numbered_parts import numbered_parts
+from thalweg.core.arrays.sphere_vectors import arc_of_chord
 from thalweg.core.ellipsoid import MEAN_RADIUS
 from thalweg.core.geodesy import geocentric_positions, geocentric_unit_vectors
 from thalweg.core.types import FloatArray, IntArray
@@ -224,7 +225,7 @@ def _set_clearance(index: IndexArrays, pieces: CoastSegments) -> None:
         if face % 2:
             turned[..., face // 2] *= -1.0
         chord, _ = tree.query(turned.reshape(-1, 3), workers=2, distance_upper_bound=largest_chord)
-        separation = 2.0 * np.arcsin(np.minimum(chord, 2.0) / 2.0).reshape(blocks, blocks)
+        separation = arc_of_chord(chord).reshape(blocks, blocks)
         bound = np.clip(separation - reach - lengths.max() - 1e-4, 0.0, MAX_CLEARANCE)
         fine = np.repeat(np.repeat(bound, size, 0), size, 1).astype(np.float32)
         sea = cells[face] > 0.0

@@ -23,6 +23,7 @@ from thalweg.chart import geojson_polygons
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.depth.global_depth import global_depth_codes
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS, ShoalArea
+from thalweg.chart.rings import disc_shape
 from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -177,7 +178,7 @@ def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
         (layer, _CHANNEL, closed.discs),
         (areas, _CHANNEL_IN_AREAS, closed.area_discs),
     ):
-        open_water = [_disc(*disc) for disc in discs]
+        open_water = [disc_shape(*disc, quad_segs=6) for disc in discs]
         open_water += [_corridor(line, reach) for line in closed.channels]
         shapes += [_without(np.array(closed_here, object), open_water)]
     parts = shapely.get_parts(np.concatenate(shapes))
@@ -252,14 +253,6 @@ def _layer_inside(box: DegreeBox) -> tuple[FloatArray, FloatArray, FloatArray]:
     beside = share > 0.05  # a ninth of the points or more are water
     filled = np.where(water, depth, np.where(beside, mean, np.nan))
     return row / POINTS_OF_DEGREE, column / POINTS_OF_DEGREE, np.asarray(filled, float)
-
-
-def _disc(lat: float, lon: float, radius: float) -> Any:
-    import shapely
-    import shapely.affinity
-
-    disc = shapely.Point(lon, lat).buffer(radius / _DEGREE, quad_segs=6)
-    return shapely.affinity.scale(disc, 1.0 / max(np.cos(np.radians(lat)), 0.01), 1.0)
 
 
 @lru_cache(maxsize=1024)

@@ -8,15 +8,14 @@ navigation.
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position
 
 
@@ -55,9 +54,8 @@ class ShoalArea:
 
 
 def _read_shoal_areas() -> tuple[ShoalArea, ...]:
-    text = resources.files("thalweg.chart").joinpath("data/shoal_areas.csv").read_text("utf-8")
     areas = []
-    for row in csv.DictReader(text.splitlines()):
+    for row in table_rows("thalweg.chart", "shoal_areas.csv"):
         points = [point.split(",") for point in row["outline"].split()]
         outline = tuple((float(lat), float(lon)) for lat, lon in points)
         is_exact = row["exact"] == "yes"

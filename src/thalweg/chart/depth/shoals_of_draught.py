@@ -7,18 +7,17 @@ in which the layer has sills that are not there.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib import resources
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from thalweg.chart.depth.shoals import Shoals, safety_contour
 from thalweg.chart.passages import Passage, read_line
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position, densify
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -43,9 +42,8 @@ class DeepChannel:
 @cache
 def deep_channels() -> tuple[DeepChannel, ...]:
     """Return the table of deep channels."""
-    text = resources.files("thalweg.chart").joinpath("data/deep_channels.csv").read_text("utf-8")
     found = []
-    for row in csv.DictReader(text.splitlines()):
+    for row in table_rows("thalweg.chart", "deep_channels.csv"):
         line = read_line(row["line"])
         found.append(DeepChannel(row["name"], float(row["max_draught_m"]), line, row["source"]))
     return tuple(found)

@@ -7,14 +7,13 @@ in the table of passages.
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 
 import numpy as np
 
 from thalweg.chart.passage_crossings import crossing_place
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position, densify
 from thalweg.core.units import NAUTICAL_MILE
 
@@ -44,11 +43,9 @@ class Bridge:
 @cache
 def every_bridge() -> tuple[Bridge, ...]:
     """Return the bridges of the table."""
-    table = resources.files("thalweg.chart") / "data/bridges.csv"
-    rows = csv.DictReader(table.read_text("utf-8").splitlines())
     return tuple(
         Bridge(row["name"], float(row["clearance_m"]), row["source"], _ends(row["ends"]))
-        for row in rows
+        for row in table_rows("thalweg.chart", "bridges.csv")
     )
 
 

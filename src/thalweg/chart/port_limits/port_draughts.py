@@ -6,16 +6,15 @@ that the index gives that of another part of the port and none is known for the 
 
 from __future__ import annotations
 
-import csv
 from functools import cache
-from importlib import resources
+
+from thalweg.core.file_reading import table_rows
 
 
 @cache
 def port_draughts() -> dict[str, dict[str, str]]:
     """Return the columns that replace those of the table of approaches, by UN/LOCODE."""
-    table = resources.files("thalweg.chart") / "data/port_draughts.csv"
     return {
         row["unlocode"]: {"max_draught_m": row["max_draught_m"], "draught_source": row["source"]}
-        for row in csv.DictReader(table.read_text("utf-8").splitlines())
+        for row in table_rows("thalweg.chart", "port_draughts.csv")
     }

@@ -6,20 +6,18 @@ The table is ``data/seas_with_other_schemes.csv``, one row a sea: name, south, n
 
 from __future__ import annotations
 
-import csv
 from functools import cache
-from importlib import resources
 
 import numpy as np
 
+from thalweg.core.file_reading import table_rows
 from thalweg.core.types import FloatArray
 
 
 @cache
 def _seas() -> tuple[tuple[str, tuple[float, float, float, float]], ...]:
     """Return the names and boxes (south, north, west, east) [deg] of the table."""
-    table = resources.files("thalweg.chart").joinpath("data/seas_with_other_schemes.csv")
-    rows = csv.DictReader(table.read_text("utf-8").splitlines())
+    rows = table_rows("thalweg.chart", "seas_with_other_schemes.csv")
     sides = ("south", "north", "west", "east")
     return tuple((r["name"], tuple(float(r[side]) for side in sides)) for r in rows)  # type: ignore[misc]
 

@@ -12,17 +12,17 @@ place. Schemes that are not in the table are not known.
 
 from __future__ import annotations
 
-import csv
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib import resources
 from typing import Any, Final
 
 import numpy as np
 
+from thalweg.chart.rings import disc_shape
 from thalweg.chart.zones.traffic_lanes import TrafficLane
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position, distance, inverse
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -197,7 +197,7 @@ def lanes_of_schemes(ends: Sequence[Position], *, inshore: bool = True) -> tuple
     """
     import shapely
 
-    near = shapely.union_all([_disc(*end) for end in ends])
+    near = shapely.union_all([disc_shape(*end, PORT_RADIUS, quad_segs=4) for end in ends])
     lanes = []
     for scheme in TRAFFIC_SCHEMES:
         if not any(_may_meet(scheme, *pair) for pair in itertools.pairwise(ends)):
@@ -216,18 +216,9 @@ def _may_meet(scheme: TrafficScheme, start: Position, goal: Position) -> bool:
     return by_way <= max(_LONGEST_DETOUR * straight, straight + _LEAST_DETOUR)
 
 
-def _disc(lat: float, lon: float) -> Any:
-    import shapely
-    import shapely.affinity
-
-    disc = shapely.Point(lon, lat).buffer(PORT_RADIUS / _DEGREE, quad_segs=4)
-    return shapely.affinity.scale(disc, 1.0 / max(np.cos(np.radians(lat)), 0.01), 1.0)
-
-
 def _read_schemes() -> tuple[TrafficScheme, ...]:
-    text = resources.files("thalweg.chart").joinpath("data/traffic_schemes.csv").read_text("utf-8")
     schemes = []
-    for row in csv.DictReader(text.splitlines()):
+    for row in table_rows("thalweg.chart", "traffic_schemes.csv"):
         points = [point.split(",") for point in row["line"].split()]
         line = tuple((float(lat), float(lon)) for lat, lon in points)
         zone, lane, starboard, port = (

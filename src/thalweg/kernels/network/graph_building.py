@@ -1,4 +1,4 @@
-"""Kernels that build networks: lengths and courses, CSR, static distances."""
+"""Kernels that build networks: lengths and courses, CSR, spaced points."""
 
 import math
 
@@ -152,74 +152,6 @@ def mirror_samples(pair, back, ptr, a, b, w, s):
             out_w[v] = w[source]
             out_s[v] = np.float32(1.0) - s[source] if back[e] else s[source]
     return out_ptr, out_a, out_b, out_w, out_s
-
-
-@jit
-def static_dijkstra(indptr, target, weight, start, goal, distance, parent):
-    """Fill least sums of weights from ``start`` (Dijkstra); stops at ``goal`` unless it is -1.
-
-    ``weight`` holds one entry per edge; ``distance`` is inf and ``parent`` -1 where unreached.
-    """
-    n = indptr.shape[0] - 1
-    heap = np.empty(n, np.int64)
-    place = np.full(n, -1, np.int64)
-    distance[:] = np.inf
-    parent[:] = -1
-    distance[start] = 0.0
-    heap[0] = start
-    place[start] = 0
-    size = 1
-    while size > 0:
-        node = heap[0]
-        place[node] = -2
-        size -= 1
-        if size > 0:
-            _sift_down(heap, place, distance, size, heap[size])
-        if node == goal:
-            return
-        for e in range(indptr[node], indptr[node + 1]):
-            other = target[e]
-            reach = distance[node] + weight[e]
-            if reach < distance[other]:
-                distance[other] = reach
-                parent[other] = node
-                if place[other] == -1:
-                    place[other] = size
-                    heap[size] = other
-                    size += 1
-                _sift_up(heap, place, distance, other)
-
-
-@kernel_only
-def _sift_up(heap, place, distance, node):
-    at = place[node]
-    while at > 0:
-        above = (at - 1) >> 1
-        if distance[heap[above]] <= distance[node]:
-            break
-        heap[at] = heap[above]
-        place[heap[at]] = at
-        at = above
-    heap[at] = node
-    place[node] = at
-
-
-@kernel_only
-def _sift_down(heap, place, distance, size, node):
-    at = 0
-    while True:
-        below = 2 * at + 1
-        if below >= size:
-            break
-        if below + 1 < size and distance[heap[below + 1]] < distance[heap[below]]:
-            below += 1
-        if distance[heap[below]] >= distance[node]:
-            break
-        heap[at] = heap[below]
-        place[heap[at]] = at
-        at = below
-    heap[at] = node
-    place[node] = at
 
 
 @jit

@@ -12,6 +12,8 @@ from thalweg.kernels.search import heap
 def static_astar(indptr, target, weight, potential, start, goal, distance, parent):
     """Fill least sums of weights from ``start`` until ``goal`` is settled (A*).
 
+    A goal of -1 and a potential of zero fill those of all nodes (Dijkstra).
+
     Parameters
     ----------
     indptr, target
@@ -23,8 +25,7 @@ def static_astar(indptr, target, weight, potential, start, goal, distance, paren
         no more than the edge's weight.
     start, goal : int
     distance, parent : float64[N], int64[N]
-        Filled as by `thalweg.kernels.network.graph_building.static_dijkstra`; final for settled
-        nodes only.
+        Filled: inf and -1 where unreached; final for settled nodes only.
 
     Returns
     -------

@@ -15,7 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network.alternatives.path_shortening import string_pull_path
 from thalweg.network.assembly import Pairs
-from thalweg.network.conformal_projection import conformal_unit_vectors
+from thalweg.network.conformal_projection import angle_to_point, conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
 from thalweg.network.shortest_paths import shortest_path
 
@@ -260,7 +260,7 @@ def _distance_and_course(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the distance [m] and course [rad] of nodes from a position, on a sphere."""
     here, there = conformal_unit_vectors(*place), waters.vectors[nodes]
-    separation = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(there - here, axis=1), 1.0))
+    separation = angle_to_point(there, here)
     lam = np.radians(place[1])
     east = np.array([-np.sin(lam), np.cos(lam), 0.0])
     course = np.arctan2(there @ east, there @ np.cross(here, east)) % (2.0 * np.pi)

@@ -1,21 +1,25 @@
-"""The geodesic grid of a coastline: nodes and legs that touch no land, cached on disk."""
+"""The geodesic grid of a coastline: nodes and legs that touch no land, cached on disk.
+
+The grid's shape is that of a sphere; its lengths are those of the ellipsoid.
+"""
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import zipfile
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.geojson_polygons import rings_from_polygons
+from thalweg.core.arrays.array_cache import load_or_make, remove_oldest
+from thalweg.core.arrays.sphere_vectors import spherical_positions
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.triangle_subdivision import outlines_crossed
@@ -40,7 +44,7 @@ if TYPE_CHECKING:
 
 FORMAT: Final = 3  # increase when the arrays or their construction change
 _BORDER_INDEX_SIDE: Final = 128
-_MAX_FILES: Final = 12  # grids cached on disk, the newest ones
+_MAX_FILES: Final = 12  # grids and parts of them cached on disk, the newest ones
 
 
 @dataclass(frozen=True)
@@ -136,17 +140,15 @@ class _GridRequest:
 
 @lru_cache(maxsize=3)
 def _load_or_make(order: _GridRequest) -> GlobeGrid:
-    try:
-        return _load(order.path)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    def make() -> GlobeGrid:
         if order.whole is None or order.within is None:
-            grid = make_grid(order.chart, order.fineness)
-        else:
-            grid = _allowed_part(_load_or_make(order.whole), order.within)
-    with contextlib.suppress(OSError):
-        _save(order.path, grid)
-        _remove_old_files(order.path.parent)
-    return grid
+            return make_grid(order.chart, order.fineness)
+        return _allowed_part(_load_or_make(order.whole), order.within)
+
+    def clean(folder: Path) -> None:
+        remove_oldest(folder.glob("[gp]*-*.npz"), _MAX_FILES)
+
+    return load_or_make(order.path, make, pack=_arrays, unpack=_grid, clean=clean)
 
 
 def make_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
@@ -235,15 +237,6 @@ def _crossing_test(index: IndexArrays) -> CrossingTest:
     return crossed
 
 
-def spherical_positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return latitude and longitude [deg] of unit vectors (n, 3), taken for a sphere's.
-
-    The grid's shape is that of the sphere; its lengths are those of the ellipsoid.
-    """
-    x, y, z = vectors.T
-    return np.degrees(np.arctan2(z, np.hypot(x, y))), np.degrees(np.arctan2(y, x))
-
-
 def _merge_pairs(
     some: tuple[Int32Array, Int32Array], more: tuple[Int32Array, Int32Array]
 ) -> tuple[Int32Array, Int32Array]:
@@ -284,27 +277,18 @@ def _gaps(tail: IntArray, angle: FloatArray) -> FloatArray:
     return gap
 
 
-def _load(path: Path) -> GlobeGrid:
-    with np.load(path, allow_pickle=False) as file:
-        pairs = Pairs(*(file[name] for name in ("first", "second", "length", "course")))
-        rejected, spacing, gap = file["facts"]
-        grid = GlobeGrid(file["lat"], file["lon"], pairs, int(rejected), float(spacing), float(gap))
+def _arrays(grid: GlobeGrid) -> dict[str, NDArray[Any]]:
+    facts = np.array([grid.rejected, grid.spacing, grid.gap])
+    return {"lat": grid.lat, "lon": grid.lon, "facts": facts, **vars(grid.pairs)}
+
+
+def _grid(arrays: Mapping[str, NDArray[Any]]) -> GlobeGrid:
+    pairs = Pairs(*(arrays[name] for name in ("first", "second", "length", "course")))
+    rejected, spacing, gap = arrays["facts"]
+    grid = GlobeGrid(arrays["lat"], arrays["lon"], pairs, int(rejected), float(spacing), float(gap))
     sizes = {len(grid.lat), len(grid.lon)}, {len(x) for x in vars(pairs).values()}
     if len(sizes[0]) > 1 or len(sizes[1]) > 1 or not len(pairs.first):
         raise ValueError("the arrays do not fit together")
     if max(int(pairs.first.max()), int(pairs.second.max())) >= len(grid.lat):
         raise ValueError("a leg ends at no node")
     return grid
-
-
-def _save(path: Path, grid: GlobeGrid) -> None:
-    facts = np.array([grid.rejected, grid.spacing, grid.gap])
-    with replacing_file(path) as file:
-        np.savez(file, allow_pickle=False, lat=grid.lat, lon=grid.lon, facts=facts,
-                 **vars(grid.pairs))  # fmt: skip
-
-
-def _remove_old_files(folder: Path) -> None:
-    grids = sorted(folder.glob("*-*.npz"), key=lambda p: p.stat().st_mtime, reverse=True)
-    for path in grids[_MAX_FILES:]:
-        path.unlink(missing_ok=True)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import zipfile
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from thalweg.core.arrays.array_cache import load_or_make, remove_oldest
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.file_writing import replacing_file
 from thalweg.network.global_grid.endpoint_attachment import ConnectedWaters
 from thalweg.network.global_grid.grid import FORMAT
 from thalweg.network.global_grid.sea_graph import (
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from thalweg.chart.depth.shoals import Shoals
     from thalweg.core.types import FloatArray
 
+_GRAPHS_KEPT: Final = 6  # on disk
 _DRAUGHTS_KEPT: Final = 8  # on disk, of each graph
 _FORMAT: Final = 7  # increase when the arrays or their construction change
 
@@ -89,13 +89,13 @@ class _GraphRequest:
 
 @lru_cache(maxsize=2)
 def _load_or_make(request: _GraphRequest) -> SeaGraph:
-    try:
-        return _load_graph(request.path)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        graph = make_sea_graph(request.chart)
-    with contextlib.suppress(OSError):
-        _save_graph(request.path, graph)
-    return graph
+    return load_or_make(
+        request.path,
+        lambda: make_sea_graph(request.chart),
+        pack=_graph_arrays,
+        unpack=_graph,
+        clean=lambda folder: remove_oldest(folder.glob(f"sea-{'?' * 16}.npz"), _GRAPHS_KEPT),
+    )
 
 
 @lru_cache(maxsize=2)
@@ -112,44 +112,48 @@ def _excess_elsewhere(request: _GraphRequest, shoals: Shoals) -> FloatArray:
     graph = _load_or_make(request)
     facts = _FORMAT, shoals.text(), hashlib.sha256(shoals.arrays.code.tobytes()).hexdigest()
     layer = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
-    path = request.path.with_name(f"{request.path.stem}-shoals-{layer}.npy")
-    with contextlib.suppress(OSError, ValueError, EOFError):
-        excess = np.load(path, allow_pickle=False)
-        if excess.shape == graph.target.shape and excess.dtype == np.float64:
-            return np.asarray(excess)
-    excess = graph.shoal_excess(shoals)
-    with contextlib.suppress(OSError), replacing_file(path) as file:
-        np.save(file, excess, allow_pickle=False)
-    with contextlib.suppress(OSError):
-        _delete_all_but_newest(path.parent.glob(f"{request.path.stem}-shoals-*.npy"))
-    return excess
+    path = request.path.with_name(f"{request.path.stem}-shoals-{layer}.npz")
+
+    def unpack(arrays: Mapping[str, NDArray[Any]]) -> FloatArray:
+        excess = arrays["excess"]
+        if excess.shape != graph.target.shape or excess.dtype != np.float64:
+            raise ValueError("not the excess of the edges of this graph")
+        return excess
+
+    def clean(folder: Path) -> None:
+        remove_oldest(folder.glob(f"{request.path.stem}-shoals-*"), _DRAUGHTS_KEPT)
+
+    return load_or_make(
+        path,
+        lambda: graph.shoal_excess(shoals),
+        pack=lambda excess: {"excess": excess},
+        unpack=unpack,
+        clean=clean,
+    )
 
 
-def _delete_all_but_newest(paths: Iterable[Path]) -> None:
-    """Delete files of draughts, except for those that were made last."""
-    oldest_first = sorted(paths, key=lambda path: path.stat().st_mtime)
-    for path in oldest_first[:-_DRAUGHTS_KEPT]:
-        path.unlink(missing_ok=True)
+def _graph_arrays(graph: SeaGraph) -> dict[str, NDArray[Any]]:
+    waters = graph.waters
+    return {
+        "lat": waters.lat,
+        "lon": waters.lon,
+        "water": waters.water,
+        "size": waters.size,
+        "reach": np.array(waters.reach),
+        "indptr": graph.indptr,
+        "target": graph.target,
+        "weight": graph.weight,
+        "canal": graph.canal,
+    }
 
 
-def _load_graph(path: Path) -> SeaGraph:
-    with np.load(path, allow_pickle=False) as file:
-        lat, lon, water, size = (file[name] for name in ("lat", "lon", "water", "size"))
-        waters = ConnectedWaters(lat, lon, water, size, float(file["reach"]))
-        graph = SeaGraph(waters, *(file[n] for n in ("indptr", "target", "weight", "canal")))
+def _graph(arrays: Mapping[str, NDArray[Any]]) -> SeaGraph:
+    lat, lon, water, size = (arrays[name] for name in ("lat", "lon", "water", "size"))
+    waters = ConnectedWaters(lat, lon, water, size, float(arrays["reach"]))
+    graph = SeaGraph(waters, *(arrays[n] for n in ("indptr", "target", "weight", "canal")))
     n, e = len(waters.lat), len(graph.target)
     if len(graph.indptr) != n + 1 or int(graph.indptr[-1]) != e or int(graph.target.max()) >= n:
         raise ValueError("the arrays do not fit together")
     if not len(graph.weight) == len(graph.canal) == e:
         raise ValueError("the arrays do not fit together")
     return graph
-
-
-def _save_graph(path: Path, graph: SeaGraph) -> None:
-    waters = graph.waters
-    with replacing_file(path) as file:
-        np.savez(
-            file, allow_pickle=False, lat=waters.lat, lon=waters.lon, water=waters.water,
-            size=waters.size, reach=np.array(waters.reach), indptr=graph.indptr,
-            target=graph.target, weight=graph.weight, canal=graph.canal,
-        )  # fmt: skip

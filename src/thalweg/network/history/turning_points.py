@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
 import numpy as np
 
+from thalweg.core.arrays.line_thinning import distances_from_arcs, mark_needed_points
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.history.voyage_tracks import VoyageTracks
 
@@ -71,50 +73,5 @@ def _divide(
     vectors: FloatArray, first: IntArray, last: IntArray, tolerance: float, keep: BoolArray
 ) -> None:
     """Mark the turning points between first and last positions."""
-    while True:
-        inside = last - first > 1
-        first, last = first[inside], last[inside]
-        if not len(first):
-            return
-        count = last - first - 1
-        begins = np.cumsum(count) - count
-        part = np.repeat(np.arange(len(first)), count)
-        index = np.arange(len(part)) - begins[part] + first[part] + 1
-        away = _distance_from_arcs(vectors, index, first, last, part)
-        most = np.maximum.reduceat(away, begins)
-        reached = np.flatnonzero(away == most[part])
-        _, where = np.unique(part[reached], return_index=True)
-        at = index[reached[where]]
-        split = most > tolerance
-        at, first, last = at[split], first[split], last[split]
-        keep[at] = True
-        first, last = np.concatenate([first, at]), np.concatenate([at, last])
-
-
-def _distance_from_arcs(
-    vectors: FloatArray, index: IntArray, first: IntArray, last: IntArray, part: IntArray
-) -> FloatArray:
-    """Return the distances of positions from the great circles between ends of their parts [m].
-
-    Beyond the ends of the arc the distance to the nearer end counts.
-    """
-    a, b = vectors[first], vectors[last]
-    normal = np.cross(a, b)
-    size = np.sqrt(np.sum(normal**2, axis=1))
-    normal /= np.where(size > 0.0, size, 1.0)[:, None]
-    chord = b - a
-    squared = np.sum(chord**2, axis=1)
-    away = np.empty(len(index))
-    along = np.empty(len(index))
-    p = vectors[index]
-    np.einsum("ij,ij->i", p, normal[part], out=away)
-    np.abs(away, out=away)
-    p -= a[part]
-    np.einsum("ij,ij->i", p, chord[part], out=along)
-    along /= np.where(squared > 0.0, squared, 1.0)[part]
-    beyond = np.flatnonzero((along < 0.0) | (along > 1.0) | (squared[part] <= 0.0))
-    if len(beyond):
-        at, to = index[beyond], part[beyond]
-        near = [np.sqrt(np.sum((vectors[at] - end[to]) ** 2, axis=1)) for end in (a, b)]
-        away[beyond] = np.minimum(*near)
-    return away
+    distances = partial(distances_from_arcs, vectors)
+    mark_needed_points(keep, first, last, tolerance=tolerance, distances=distances)

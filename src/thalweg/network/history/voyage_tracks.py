@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.chart.port_names import normalised_port_name
 from thalweg.chart.ports import PORTS
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.sphere_vectors import arc_of_chord
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, MEAN_RADIUS, Position, distance
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -62,7 +63,7 @@ def lengths_between(first: FloatArray, second: FloatArray) -> FloatArray:
     ndarray (...) : Lengths [m].
     """
     chord = np.sqrt(np.sum((second - first) ** 2, axis=-1))
-    return 2.0 * MEAN_RADIUS * np.arcsin(np.minimum(chord / (2.0 * MEAN_RADIUS), 1.0))
+    return MEAN_RADIUS * arc_of_chord(chord / MEAN_RADIUS)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
-from thalweg.core.geodesy import MEAN_RADIUS, Position, direct, inverse
+from thalweg.core.geodesy import MEAN_RADIUS, Position, positions_along
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network import lattice_edges
 from thalweg.network.assembly import (
@@ -262,8 +262,10 @@ def _level_samples(
     y = (level.j[point[of]] + s[missing].astype(float) * dj[offset[of]]) * level.step
     lat, lon = frame.to_positions(x, y)
     on_geodesic = np.flatnonzero(bent[of])
-    lat[on_geodesic], lon[on_geodesic] = _geodesic_positions(
-        stations, part.pairs, of[on_geodesic], s[missing[on_geodesic]].astype(float)
+    first, second = part.pairs.first[of[on_geodesic]], part.pairs.second[of[on_geodesic]]
+    lat[on_geodesic], lon[on_geodesic] = positions_along(
+        *(stations.lat[first], stations.lon[first], stations.lat[second], stations.lon[second]),
+        s[missing[on_geodesic]].astype(float),
     )
     a[missing] = b[missing] = len(stations.lat) + np.arange(len(missing))
     w[missing] = 0.0
@@ -282,16 +284,6 @@ def _is_bent(frame: ConformalProjection, part: LevelPairs, di: IntArray, dj: Int
     ends = level.j[part.point] + np.stack([np.zeros_like(dj[offset]), dj[offset]])
     ordinate = np.abs(ends * level.step * frame.unit + frame.y0).max(axis=0)
     return np.asarray(length * np.tanh(ordinate) / 8.0 > _MAX_SAMPLE_OFFSET)
-
-
-def _geodesic_positions(
-    stations: Stations, pairs: Pairs, chosen: IntArray, fraction: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return positions [deg] at fractions of the geodesics of chosen pairs."""
-    first, second = pairs.first[chosen], pairs.second[chosen]
-    lat, lon = stations.lat, stations.lon
-    length, course, _ = inverse(lat[first], lon[first], lat[second], lon[second])
-    return direct(lat[first], lon[first], course, fraction * length)
 
 
 def _end_link_spacing(draft: UnassembledLattice, spacing: float) -> FloatArray:

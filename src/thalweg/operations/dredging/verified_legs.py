@@ -118,14 +118,12 @@ def track_of_path(
     site_network: SiteNetwork, path: TimedPath, setting: int, *, corners: bool = True
 ) -> Track:
     """Return the track of a path by its corners or all its nodes, without waits below 1 s."""
-    wait = np.maximum(0.0, path.node_depart - path.node_arrive)
-    wait[-1] = 0.0
-    wait = np.where(wait < 1.0, 0.0, wait)
     network = site_network.network
-    lat, lon = network.lat[path.nodes], network.lon[path.nodes]
-    keep = _essential_nodes(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
-    count = int(keep.sum())
-    return Track(lat[keep], lon[keep], path.depart, wait[keep], np.full(count - 1, setting))
+    places, arrive = (network.lat[path.nodes], network.lon[path.nodes]), path.node_arrive
+    track = Track.along_path(*places, arrive=arrive, depart=path.node_depart, setting=setting)
+    if not corners:
+        return track
+    return track.kept(np.flatnonzero(_essential_nodes(*places) | (track.wait > 0.0)))
 
 
 def _essential_nodes(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:

@@ -14,7 +14,6 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import MINUTE
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
 _STEP: Final = 5.0 * MINUTE  # of the samples of the weather at a site
 
@@ -48,22 +47,12 @@ class WorkWindows:
         period : (float, float)
             Start and end [s since 1970-01-01T00:00Z].
         """
-        limits = ship.limits
-        checked = {WAVE_HEIGHT} if math.isfinite(limits.wave_height) else set()
-        if math.isfinite(limits.wind_speed):
-            checked |= {EASTWARD_WIND, NORTHWARD_WIND}
+        checked = ship.limits.limited_weather
         if not checked:
             return cls(np.empty(0), np.empty(0))
         times = np.arange(period[0], period[1] + _STEP, _STEP)
         where = np.full(times.shape, place[0]), np.full(times.shape, place[1])
-        sampled = sea.sample(sorted(checked), times, *where)
-        allowed = np.ones(times.shape, bool)
-        with np.errstate(invalid="ignore"):
-            if WAVE_HEIGHT in sampled:
-                allowed &= sampled[WAVE_HEIGHT] <= limits.wave_height
-            if EASTWARD_WIND in sampled:
-                wind = np.hypot(sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND])
-                allowed &= wind <= limits.wind_speed
+        allowed = ship.limits.keeps_weather_limits(sea.sample(checked, times, *where))
         step = np.where(allowed[:-1] & allowed[1:], np.diff(times), 0.0)
         return cls(times, cumulative_sums(step))
 

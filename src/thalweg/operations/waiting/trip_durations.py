@@ -25,7 +25,7 @@ from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_int
 from thalweg.route.referee.sailing_physics import (
     SailingEnvironment,
     SailingState,
-    conditions_at,
+    conditions_in_state,
     make_sailing_environment,
     sample_sea_and_depth,
     solve_sailing_state,
@@ -51,7 +51,6 @@ _MAX_POINTS_PER_CHUNK: Final = 200_000  # pieces times departures computed toget
 _MAX_ITERATIONS: Final = 12
 _TIME_TOLERANCE: Final = 1e-3  # change of the time for a piece [s] that ends the iteration
 _IMPASSABLE_TIME: Final = 1e9  # time [s] given to a piece that cannot be passed
-_CRAB_ITERATIONS: Final = 3  # each reduces the error of the crab angle by a factor of about 50
 
 
 def trip_table(
@@ -256,10 +255,7 @@ class _TrackSimulation:
     def _speed_and_power(self, here: TrackPoints, time: FloatArray) -> _SpeedAndPower:
         """Return speed over ground and power at points and times."""
         motion = solve_sailing_state(self.environment, here, time)
-        if self.environment.ship.depends_on_crab_angle:
-            motion, conditions = self._with_crab_angle(here, time, motion)
-        else:
-            conditions = self._conditions(here, time, motion)
+        conditions = conditions_in_state(self.environment, here, time, motion)
         power = np.asarray(self.environment.ship.power(conditions, here.setting), dtype=np.float64)
         unknown = np.isnan(motion.speed_through_water)
         for name in (EASTWARD_CURRENT, NORTHWARD_CURRENT):
@@ -286,39 +282,6 @@ class _TrackSimulation:
             unknown |= np.isnan(motion.depth)
             passes &= motion.depth - self.environment.ship.draught >= self.min_ukc
         return _SpeedAndPower(np.where(passes, motion.speed_over_ground, 0.0), power, unknown)
-
-    def _conditions(self, here: TrackPoints, time: FloatArray, motion: SailingState) -> Conditions:
-        return conditions_at(
-            self.environment,
-            here,
-            time,
-            sampled=motion.sampled,
-            depth=motion.depth,
-            heading=motion.heading,
-        )
-
-    def _with_crab_angle(
-        self, here: TrackPoints, time: FloatArray, motion: SailingState
-    ) -> tuple[SailingState, Conditions]:
-        """Return motion and conditions of a ship whose rudder drag depends on the crab angle."""
-        east, north = np.sin(here.course), np.cos(here.course)
-        along = across = np.zeros(len(here))
-        if self.environment.has_current:
-            current = [motion.sampled[n] for n in (EASTWARD_CURRENT, NORTHWARD_CURRENT)]
-            along = current[0] * east + current[1] * north
-            across = current[0] * north - current[1] * east
-        for _ in range(_CRAB_ITERATIONS):
-            with np.errstate(invalid="ignore", divide="ignore"):
-                crab = -np.arcsin(across / motion.speed_through_water)
-            motion = replace(motion, heading=(here.course + crab) % (2.0 * math.pi))
-            conditions = self._conditions(here, time, motion).with_values(crab_angle=crab)
-            speed = self.environment.ship.speed_through_water(conditions, here.setting)
-            motion = replace(motion, speed_through_water=np.asarray(speed, dtype=np.float64))
-        with np.errstate(invalid="ignore"):
-            ground = along + np.sqrt(motion.speed_through_water**2 - across**2)
-        return replace(
-            motion, speed_over_ground=np.where(ground > 0.0, ground, math.nan)
-        ), conditions
 
 
 def _missing_data_error(here: TrackPoints, i: int, depart: float) -> CoverageError:

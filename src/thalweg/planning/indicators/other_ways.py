@@ -92,7 +92,7 @@ class OtherWays:
         """Yield the shortest way without each passage of the fastest route."""
         chart, through = self.chart, self._through(network)
         shortest = self._trees(network)[0].distance[network.meta.goal]
-        for name in self._passed(network, through)[:_PASSAGE_WAYS]:
+        for name in self._passed(through)[:_PASSAGE_WAYS]:
             weight = self._open(network, ~through[name])
             tree = shortest_path_tree(network.graph, weight, network.meta.start)
             path = tree.path(network.meta.goal)
@@ -141,7 +141,7 @@ class OtherWays:
         legs = network.lat[tails], network.lon[tails], network.lat[heads], network.lon[heads]
         return legs_through(chart.coastline, chart.passages, legs)
 
-    def _passed(self, network: Network, through: dict[str, NDArray[np.bool_]]) -> list[str]:
+    def _passed(self, through: dict[str, NDArray[np.bool_]]) -> list[str]:
         """Return the passages of the fastest route among some."""
         chart, track = self.chart, self.fastest.track
         lat, lon = np.asarray(track.lat, float), np.asarray(track.lon, float)

@@ -15,9 +15,9 @@ from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.depth.shoals import EXCESS, Shoals
 from thalweg.chart.depth.shoals_of_draught import shoals_of_draught
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.leg_ends import leg_ends
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance, format_position_minutes
-from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.global_grid.endpoint_attachment import LinePlaces
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -196,7 +196,7 @@ def _has_shoals(
 
     A named shoal area counts beside a channel as well, unless a harbour is in it.
     """
-    legs = _legs(path)
+    legs = leg_ends(*np.array(path, float).T)
     sailed = cumulative_sums(distance(*legs))
     beside = (sailed[:-1] < left_out[0]) | (sailed[-1] - sailed[1:] < left_out[1])
     if np.any(np.asarray(shoals.excess(*legs))[beside] > _MOST_SHOAL):
@@ -226,8 +226,3 @@ def _harbours(ends: Sequence[Endpoint], cut: Sequence[Endpoint]) -> list[Positio
 
 def _length(end: Endpoint) -> float:
     return 0.0 if end.approach is None else end.approach.length
-
-
-def _legs(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    lat, lon = np.array(path, float).T
-    return lat[:-1], lon[:-1], lat[1:], lon[1:]

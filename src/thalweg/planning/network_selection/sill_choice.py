@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import compress, pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +18,7 @@ from thalweg.chart import Chart
 from thalweg.chart.depth.closed_shoals import OpenDisc
 from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
+from thalweg.core.arrays.leg_ends import leg_ends
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, densify, distance, format_position
 from thalweg.core.types import BoolArray, FloatArray
@@ -53,7 +54,8 @@ def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
             path = seas.graph_path(start, goal)
         except NoRouteError:
             continue
-        crossing = [leg for leg, cut in zip(pairwise(path), _crossed(shapes, *_legs(path))) if cut]
+        cut = _crossed(shapes, *leg_ends(*np.array(path, float).T))
+        crossing = list(compress(pairwise(path), cut))
         if not crossing or _in_named_area(crossing, closed.depth_of_areas):
             continue
         length, _ = path_length_and_canals(seas.chart, path)
@@ -88,11 +90,6 @@ def _middle(discs: Sequence[OpenDisc], ends: Sequence[Endpoint]) -> Position:
         return min(float(distance(at[0], at[1], end.lat, end.lon)) for end in ends)
 
     return max(centres, key=least)
-
-
-def _legs(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    lat, lon = np.array(path, float).T
-    return lat[:-1], lon[:-1], lat[1:], lon[1:]
 
 
 def _crossed(

@@ -27,19 +27,15 @@ def track_from_front_point(network: Network, point: Any) -> Track:
     Track : With waits and settings.
     """
     path = np.asarray(point.path)
-    wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
-    wait[-1] = 0.0
-    wait = np.where(wait < 1.0, 0.0, wait)
-    setting = np.asarray(point.setting)
-    lat, lon = network.stations.lat[path], network.stations.lon[path]
-    essential = np.flatnonzero(essential_nodes(lat, lon, setting, wait))
-    return Track(
-        lat[essential],
-        lon[essential],
-        float(point.path_arrive[0]),
-        wait[essential],
-        setting[essential[:-1]],
+    track = Track.along_path(
+        network.stations.lat[path],
+        network.stations.lon[path],
+        arrive=point.path_arrive,
+        depart=point.path_depart,
+        setting=point.setting,
     )
+    keep = essential_nodes(track.lat, track.lon, track.setting, track.wait)
+    return track.kept(np.flatnonzero(keep))
 
 
 def essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from importlib import resources
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.chart.rings import Rings
+from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import distance, format_position, inverse, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.network import Network
@@ -37,8 +36,7 @@ _COMPASS_POINTS = (
 @cache
 def landmasses() -> Mapping[str, tuple[float, float]]:
     """Return a position (lat, lon) [deg] on each landmass with a name, from ``landmasses.csv``."""
-    text = (resources.files("thalweg.planning") / "data/landmasses.csv").read_text("utf-8")
-    rows = csv.DictReader(text.splitlines())
+    rows = table_rows("thalweg.planning", "landmasses.csv")
     return {row["name"]: (float(row["lat"]), float(row["lon"])) for row in rows}
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.zones.missing_schemes import seas_with_other_schemes
 from thalweg.chart.zones.traffic_schemes import INSHORE, PORT_RADIUS, TRAFFIC_SCHEMES
+from thalweg.core.arrays.leg_ends import leg_ends
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -40,7 +41,7 @@ def lane_notes(chart: Chart, route: Route) -> list[str]:
     """
     if not _has_schemes(chart):
         return []
-    legs = _legs(*_positions(route))
+    legs = leg_ends(*_positions(route))
     against = _metres(chart, legs)
     along = _metres(chart, (*legs[2:], *legs[:2]))
     inshore = _metres(chart, legs, inshore=True)
@@ -104,7 +105,7 @@ def lane_detour_notes(
     if not _has_schemes(chart):
         return []
     kept = free = 0.0
-    own = _legs(*_positions(route)) if route is not None else None
+    own = leg_ends(*_positions(route)) if route is not None else None
     names: dict[str, list[str]] = {}
     for network in networks:
         edges, length = network.edges, network.edges.length
@@ -115,11 +116,11 @@ def lane_detour_notes(
         without = penalty.copy()
         without[some] = np.maximum(penalty[some] - chart.zones.lane_group.excess(*ends), 1.0)
         places = [_shortest(network, length * factor) for factor in (penalty, without)]
-        kept += float(np.sum(distance(*_legs(*places[0]))))
-        free += float(np.sum(distance(*_legs(*places[1]))))
+        kept += float(np.sum(distance(*leg_ends(*places[0]))))
+        free += float(np.sum(distance(*leg_ends(*places[1]))))
         for inshore in (False, True):
             against = {} if own is None else _metres(chart, own, inshore=inshore)
-            for name, metres in _metres(chart, _legs(*places[1]), inshore=inshore).items():
+            for name, metres in _metres(chart, leg_ends(*places[1]), inshore=inshore).items():
                 if metres > _LEAST >= against.get(name, 0.0):
                     names.setdefault(_KEPT_OUT[inshore], []).append(name)
     longer = kept - free
@@ -175,7 +176,7 @@ def routes_within_lanes(
 
 def _lengths_against(chart: Chart, route: Route) -> FloatArray:
     """Return how far a route runs against lanes, and in inshore traffic zones [m]."""
-    legs = _legs(*_positions(route))
+    legs = leg_ends(*_positions(route))
     return np.array([sum(_metres(chart, legs, inshore=one).values()) for one in (False, True)])
 
 
@@ -195,10 +196,6 @@ def _shortest(network: Network, weight: FloatArray) -> tuple[FloatArray, FloatAr
 
 def _positions(route: Route) -> tuple[FloatArray, FloatArray]:
     return np.asarray(route.track.lat, float), np.asarray(route.track.lon, float)
-
-
-def _legs(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, ...]:
-    return lat[:-1], lon[:-1], lat[1:], lon[1:]
 
 
 def _metres(

@@ -150,7 +150,10 @@ def _with_least_depths(context: PlanningContext, network: Network, time: float) 
 def _keeps_limit(
     context: PlanningContext, place: Violation, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
-    """Return where the limit of a violation is kept at its time; unknown values keep it."""
+    """Return where the limit of a violation is not known to be exceeded at its time.
+
+    Edges in unknown weather or over unknown depth stay: search and referee refuse them.
+    """
     sea, limits = context.sea, context.needs.limits
     if place.reason == _DEPTH:
         depth = np.full(lat.shape, np.inf)

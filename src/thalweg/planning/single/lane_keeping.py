@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.chart.zones.traffic_schemes import INSHORE, TRAFFIC_SCHEMES, TrafficScheme
+from thalweg.core.arrays.leg_ends import leg_ends
 from thalweg.core.geodesy import Position, distance, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -63,7 +64,7 @@ def in_lanes_of_traffic(track: Track, chart: Chart) -> Track:
 
 def _against(chart: Chart, track: Track) -> dict[str, tuple[int, int]]:
     """Return the first and the last waypoint of the stretch of a track against each scheme."""
-    legs = _legs(track.lat, track.lon)
+    legs = leg_ends(track.lat, track.lon)
     length, group = np.asarray(distance(*legs)), chart.zones.lane_group
     found: dict[str, list[tuple[int, float]]] = {}
     for leg, lane, share in zip(*group.shares_against(*legs), strict=True):
@@ -91,7 +92,7 @@ def _by_lane(track: Track, chart: Chart, scheme: TrafficScheme, first: int, last
         ends = [(float(track.lat[i]), float(track.lon[i])) for i in (begin, end)]
         for places in _lane_between(scheme, *ends):
             lat, lon = np.array([ends[0], *places, ends[1]]).T
-            if np.any(chart.legs_blocked(*_legs(lat, lon))):
+            if np.any(chart.legs_blocked(*leg_ends(lat, lon))):
                 continue
             if _length(chart, lat, lon) > _MOST_LONGER * length + _LEAST:
                 continue
@@ -130,7 +131,7 @@ def _may_replace(track: Track, chart: Chart, begin: int, end: int) -> bool:
     """Return whether the waypoints between two may go: no waits and no canals."""
     if np.any(np.asarray(track.wait)[begin + 1 : end]):
         return False
-    legs = _legs(track.lat[begin : end + 1], track.lon[begin : end + 1])
+    legs = leg_ends(track.lat[begin : end + 1], track.lon[begin : end + 1])
     return not np.any(np.asarray(chart.canal_of_legs(*legs)) >= 0)
 
 
@@ -149,17 +150,11 @@ def _with_places(track: Track, begin: int, end: int, places: Sequence[Position])
 
 
 def _length(chart: Chart, lat: FloatArray, lon: FloatArray) -> float:
-    return float(np.sum(np.asarray(distance(*_legs(lat, lon)))))
+    return float(np.sum(np.asarray(distance(*leg_ends(lat, lon)))))
 
 
 def _penalised(chart: Chart, lat: FloatArray, lon: FloatArray) -> float:
     """Return the length of a track with what miles in zones and against lanes count more [m]."""
-    legs = _legs(lat, lon)
+    legs = leg_ends(lat, lon)
     penalty = np.asarray(chart.zones.factors(*legs)[0])
     return float(np.sum(np.asarray(distance(*legs)) * penalty))
-
-
-def _legs(
-    lat: FloatArray, lon: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    return lat[:-1], lon[:-1], lat[1:], lon[1:]

@@ -138,13 +138,6 @@ def refine_track(context: PlanningContext, track: Track, limits: Limits) -> Rout
 
 def track_from_result(network: Network, result: SearchResult, setting: int) -> Track:
     """Return a path on the network as a track with its waits."""
-    path = result.path
-    wait = np.maximum(0.0, result.path_depart - result.path_arrive)
-    wait[-1] = 0.0
-    return Track(
-        network.stations.lat[path],
-        network.stations.lon[path],
-        float(result.path_arrive[0]),
-        np.where(wait < 1.0, 0.0, wait),
-        np.full(len(path) - 1, setting),
-    )
+    places = network.stations.lat[result.path], network.stations.lon[result.path]
+    arrive, depart = result.path_arrive, result.path_depart
+    return Track.along_path(*places, arrive=arrive, depart=depart, setting=setting)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import heapq
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.arrays.cumulative_sums import cumulative_sums
+from thalweg.core.arrays.line_thinning import InnerPoints, inner_points, mark_needed_points
 from thalweg.core.geodesy import MEAN_RADIUS, distance, inverse
 from thalweg.core.rhumb_lines import rhumb_cross_track
 from thalweg.core.types import BoolArray, FloatArray, IntArray
@@ -132,8 +134,7 @@ def greatest_left_out(line: RouteLine, kept: IntArray) -> FloatArray:
     found = np.zeros(len(kept) - 1)
     wide = np.flatnonzero(np.diff(kept) > 1)
     if wide.size:
-        apart, first = _inner_cross_tracks(line, kept[wide], kept[wide + 1])
-        found[wide] = np.maximum.reduceat(apart, first)
+        found[wide] = _greatest_distances(line, kept[wide], kept[wide + 1])
     return found
 
 
@@ -171,47 +172,38 @@ def _cross_track(
     return np.asarray(np.where(beyond, np.minimum(away, np.abs(away - length)) + aside, aside))
 
 
-def _inner_cross_tracks(
-    line: RouteLine, first: IntArray, last: IntArray
-) -> tuple[FloatArray, IntArray]:
-    """Return how far the waypoints between pairs of others are from the lines of these.
-
-    Parameters
-    ----------
-    first, last : Waypoints, with one or more between the two of each pair, (m,).
-
-    Returns
-    -------
-    apart : Distances of all waypoints between, pair after pair [m].
-    start : Where each pair begins in them, (m,).
-    """
+def _distances_from_geodesics(
+    line: RouteLine, first: IntArray, last: IntArray, between: InnerPoints
+) -> FloatArray:
+    """Return how far the waypoints between pairs of others are from the lines of these [m]."""
     lat, lon = line.lat, line.lon
-    count = last - first - 1
-    start = np.cumsum(count) - count
-    pair = np.repeat(np.arange(len(count)), count)
-    inner = first[pair] + 1 + np.arange(len(pair)) - start[pair]
+    index, pair = between.point, between.pair
     length, course, _ = inverse(lat[first], lon[first], lat[last], lon[last])
-    away, bearing, _ = inverse(lat[first[pair]], lon[first[pair]], lat[inner], lon[inner])
-    return _cross_track(length[pair], course[pair], away, bearing), start
+    away, bearing, _ = inverse(lat[first[pair]], lon[first[pair]], lat[index], lon[index])
+    return _cross_track(length[pair], course[pair], away, bearing)
+
+
+def _greatest_distances(line: RouteLine, first: IntArray, last: IntArray) -> FloatArray:
+    """Return the greatest distance [m] of a waypoint between from the line, of each pair."""
+    between = inner_points(first, last)
+    apart = _distances_from_geodesics(line, first, last, between)
+    return np.asarray(np.maximum.reduceat(apart, between.begins))
 
 
 def _turns(line: RouteLine, chart: Chart | None, tolerance: float) -> IntArray:
-    """Return the waypoints to keep (Douglas and Peucker 1973), all stretches of a depth at once."""
+    """Return the waypoints to keep where the route turns, and those that are held."""
     keep = line.held.copy()
     held = np.flatnonzero(keep)
     first, last = held[:-1], held[1:]
-    first, last = first[~line.rhumb[first]], last[~line.rhumb[first]]
-    while (wide := last - first > 1).any():
-        first, last = first[wide], last[wide]
-        apart, start = _inner_cross_tracks(line, first, last)
-        greatest = np.maximum.reduceat(apart, start)
-        stays = (greatest > tolerance) | _blocked(line, chart, first, last)
-        pair = np.repeat(np.arange(len(first)), last - first - 1)
-        top = np.flatnonzero(apart == greatest[pair])
-        _, one = np.unique(pair[top], return_index=True)
-        worst = (first + 1 + top[one] - start)[stays]
-        keep[worst] = True
-        first, last = np.append(first[stays], worst), np.append(worst, last[stays])
+    apart = ~line.rhumb[first]
+    mark_needed_points(
+        keep,
+        first[apart],
+        last[apart],
+        tolerance=tolerance,
+        distances=partial(_distances_from_geodesics, line),
+        must_split=partial(_blocked, line, chart),
+    )
     return np.flatnonzero(keep)
 
 
@@ -289,6 +281,5 @@ def _may_join(
     """Return whether one leg may stand for those between two waypoints, for each pair."""
     if not first.size:
         return np.zeros(0, bool)
-    apart, start = _inner_cross_tracks(line, first, last)
-    close = np.maximum.reduceat(apart, start) <= tolerance
+    close = _greatest_distances(line, first, last) <= tolerance
     return np.asarray(close & ~_blocked(line, chart, first, last))

@@ -6,7 +6,13 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
+from thalweg.core.geodesy import (
+    direct,
+    inverse,
+    positions_along,
+    rough_lengths,
+    unwrap_longitude,
+)
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
 from thalweg.route.evaluators.time_evaluator import (
@@ -174,8 +180,7 @@ def _positions_along(
     line: Polyline, start: IntArray, end: IntArray, share: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the positions at shares of the geodesics between waypoints."""
-    length, course, _ = inverse(line.lat[start], line.lon[start], line.lat[end], line.lon[end])
-    return direct(line.lat[start], line.lon[start], course, share * length)
+    return positions_along(line.lat[start], line.lon[start], line.lat[end], line.lon[end], share)
 
 
 def _with_cuts(line: Polyline, corners: IntArray, back: FloatArray, on: FloatArray) -> Polyline:

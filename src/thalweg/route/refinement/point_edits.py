@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from thalweg.core.arrays.sphere_vectors import arc_of_chord, spherical_positions
 from thalweg.core.geodesy import unit_vectors
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
@@ -136,16 +137,12 @@ def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArra
     float64 array (n, GENE_COLUMNS) : With the leg of ``a``.
     """
     u, v = unit_vectors(a[:, LAT], a[:, LON]), unit_vectors(b[:, LAT], b[:, LON])
-    arc = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(u - v, axis=1), 1.0))
+    arc = arc_of_chord(np.linalg.norm(u - v, axis=1))
     with np.errstate(invalid="ignore", divide="ignore"):
         p = np.where(arc > 1e-9, np.sin((1.0 - share) * arc) / np.sin(arc), 1.0 - share)
         q = np.where(arc > 1e-9, np.sin(share * arc) / np.sin(arc), share)
-    x, y, z = (p[:, None] * u + q[:, None] * v).T
     made = np.array(a)
-    made[:, LAT], made[:, LON] = (
-        np.degrees(np.arctan2(z, np.hypot(x, y))),
-        np.degrees(np.arctan2(y, x)),
-    )
+    made[:, LAT], made[:, LON] = spherical_positions(p[:, None] * u + q[:, None] * v)
     for column in (
         columns.WAITING_TIME,
         columns.IS_REQUIRED,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.arrays.line_thinning import distances_from_arcs, mark_needed_points
 from thalweg.core.geodesy import MEAN_RADIUS, unit_vectors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
@@ -48,7 +49,7 @@ def simplified_route(
     length = float(route.legs["length"].sum())
     best = route
     for share in _OFFSET_TOLERANCES:
-        keep = _douglas_peucker(track, share * length, held)
+        keep = _needed_waypoints(track, share * length, held)
         if keep.sum() == len(best.track.lat):
             continue
         fewer = score(_track_through(track, keep))
@@ -64,33 +65,17 @@ def _track_through(track: Track, keep: NDArray[np.bool_]) -> Track:
     )
 
 
-def _douglas_peucker(
+def _needed_waypoints(
     track: Track, largest_offset: float, held: NDArray[np.bool_] | None
 ) -> NDArray[np.bool_]:
-    """Return which waypoints to keep for a largest offset ``largest_offset`` [m] of the others.
-
-    The algorithm of Douglas & Peucker (1973), on the sphere.
-    """
-    points = unit_vectors(track.lat, track.lon)
-    keep = np.zeros(len(points), bool)
+    """Return which waypoints to keep for a largest offset ``largest_offset`` [m] of the others."""
+    keep = np.zeros(len(track.lat), bool)
     keep[[0, -1]] = True
     keep[np.flatnonzero(track.wait)] = True
     keep[1:-1] |= np.diff(track.setting) != 0
     if held is not None:
         keep |= held
     fixed = np.flatnonzero(keep)
-    spans = list(itertools.pairwise(fixed))
-    while spans:
-        a, b = spans.pop()
-        if b - a < 2:
-            continue
-        normal = np.cross(points[a], points[b])
-        size = float(np.linalg.norm(normal))
-        cross_track = (
-            np.abs(points[a + 1 : b] @ normal) / size if size > 0.0 else np.ones(b - a - 1)
-        )
-        k = int(np.argmax(cross_track))
-        if cross_track[k] * MEAN_RADIUS > largest_offset:
-            keep[a + 1 + k] = True
-            spans += [(a, a + 1 + k), (a + 1 + k, b)]
+    distances = partial(distances_from_arcs, MEAN_RADIUS * unit_vectors(track.lat, track.lon))
+    mark_needed_points(keep, fixed[:-1], fixed[1:], tolerance=largest_offset, distances=distances)
     return keep

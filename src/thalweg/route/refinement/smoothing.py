@@ -130,7 +130,7 @@ def smooth(
         if not math.isfinite(_cost(first, evaluator)):
             return track
     line = string_pull(first, evaluator)
-    if _may_be_constrained(line, evaluator):
+    if _may_be_constrained(evaluator):
         line = cut_corners(line, evaluator)
     line = _shortened_waits(line, evaluator)
     if evaluator.by_length:  # sideways moves cannot shorten it
@@ -229,7 +229,7 @@ def _refine_by_levels(line: Polyline, evaluator: PolylineEvaluator, finest: int)
     """Refine a line level by level."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
-    constrained = _may_be_constrained(line, evaluator)
+    constrained = _may_be_constrained(evaluator)
     line = _refined(line, evaluator, constrained)
     while longest > total / finest and (idle < 2 or longest > total / 16.0):
         before = _elapsed_cost(line, evaluator)
@@ -277,7 +277,7 @@ def _refined(line: Polyline, evaluator: PolylineEvaluator, constrained: bool) ->
     )
 
 
-def _may_be_constrained(line: Polyline, evaluator: PolylineEvaluator) -> bool:
+def _may_be_constrained(evaluator: PolylineEvaluator) -> bool:
     """Return whether an obstacle may bind a line: a chart, or limits of any kind."""
     limited = np.isfinite(evaluator.limits).any()
     return bool(limited) or evaluator.chart is not None

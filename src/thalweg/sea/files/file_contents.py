@@ -123,7 +123,7 @@ def _placed_variable(
     array = dataset[chosen.variable]
     clock = time_coordinates.time_coordinate(dataset, array)
     if clock is None:
-        _refuse_undated(dataset, array, source)
+        _refuse_undated(array, source)
     array, roms_shift = _at_roms_centres(dataset, array, chosen.role)
     place = placement_cache.places.get(chosen.variable)
     if place is None:
@@ -185,7 +185,7 @@ def _at_roms_centres(dataset: Any, array: Any, role: str) -> tuple[Any, tuple[in
     return (centred, expected) if short == expected else (array, None)
 
 
-def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
+def _refuse_undated(array: Any, source: str) -> None:
     """Raise `DatasetError` for variables along a time axis without dates."""
     for dim in array.dims:
         name = str(dim).lower()

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import warnings
-import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from thalweg.core.arrays.array_cache import load_or_make
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, ThalwegWarning
-from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.ensemble_layer import check_not_ensemble
@@ -104,22 +104,23 @@ def analyse_layer(
     names = harmonic_analysis.select_constituents(times, constituents, rayleigh)
     rows, columns = layer.grid.shape
     lat, lon = grid_positions(layer.grid)
-    path = _cache_path(layer, names) if cache else None
-    cached = _read_cache(path, lat, lon) if path else None
-    if cached is not None:
-        return cached
-    window = GridWindow(0, times.size, 0, rows, 0, columns)
-    series: dict[str, Any] = {}
-    for quantity in layer.quantities:
-        if set(quantity.names) & set(TIDAL_VARIABLES):
-            values = quantity.read(window, columns)
-            series.update({n: values[n].T for n in quantity.names if n in TIDAL_VARIABLES})
-    analysis = harmonic_analysis.analyse(
-        times, series, lat=lat, lon=lon, constituents=names, rayleigh=rayleigh, progress=progress
-    )
-    if path is not None:
-        _write_cache(path, analysis)
-    return analysis
+
+    def make() -> harmonic_analysis.TideAnalysis:
+        window = GridWindow(0, times.size, 0, rows, 0, columns)
+        series: dict[str, Any] = {}
+        for quantity in layer.quantities:
+            if set(quantity.names) & set(TIDAL_VARIABLES):
+                values = quantity.read(window, columns)
+                series.update({n: values[n].T for n in quantity.names if n in TIDAL_VARIABLES})
+        return harmonic_analysis.analyse(
+            times, series, lat=lat, lon=lon, constituents=names, rayleigh=rayleigh,
+            progress=progress,
+        )  # fmt: skip
+
+    if not cache:
+        return make()
+    unpack = partial(_analysis, lat=lat, lon=lon)
+    return load_or_make(_cache_path(layer, names), make, pack=_arrays, unpack=unpack)
 
 
 def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
@@ -150,9 +151,9 @@ def _sample_digest(layer: GridLayer) -> str:
     return digest.hexdigest()
 
 
-def _write_cache(path: Path, analysis: harmonic_analysis.TideAnalysis) -> None:
+def _arrays(analysis: harmonic_analysis.TideAnalysis) -> dict[str, NDArray[Any]]:
     constants = analysis.constituents
-    arrays: dict[str, Any] = {
+    arrays: dict[str, NDArray[Any]] = {
         "names": np.array(constants.names),
         "record": np.array([analysis.start, analysis.end]),
     }
@@ -162,32 +163,19 @@ def _write_cache(path: Path, analysis: harmonic_analysis.TideAnalysis) -> None:
         arrays[f"mean:{name}"] = constants.mean[name]
         arrays[f"share:{name}"] = analysis.tidal_share[name]
         arrays[f"variance:{name}"] = analysis.variance[name]
-    with contextlib.suppress(OSError), replacing_file(path) as file:
-        np.savez(file, **arrays)
+    return arrays
 
 
-def _read_cache(
-    path: Path, lat: FloatArray, lon: FloatArray
-) -> harmonic_analysis.TideAnalysis | None:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            held = {key: file[key] for key in file.files}
-        parts: dict[str, dict[str, FloatArray]] = {}
-        for key, value in held.items():
-            kind, _, name = key.partition(":")
-            parts.setdefault(kind, {})[name] = value
-        constants = Constituents(
-            tuple(str(n) for n in held["names"]),
-            parts["amplitude"],
-            parts["phase"],
-            parts["mean"],
-            lat,
-            lon,
-            "foreman",
-        )
-        start, end = (float(x) for x in held["record"])
-        return harmonic_analysis.TideAnalysis(
-            constants, parts["share"], parts["variance"], start, end
-        )
-    except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
-        return None
+def _analysis(
+    arrays: Mapping[str, NDArray[Any]], lat: FloatArray, lon: FloatArray
+) -> harmonic_analysis.TideAnalysis:
+    parts: dict[str, dict[str, FloatArray]] = {}
+    for key, value in arrays.items():
+        kind, _, name = key.partition(":")
+        parts.setdefault(kind, {})[name] = value
+    names = tuple(str(name) for name in arrays["names"])
+    constants = Constituents(
+        names, parts["amplitude"], parts["phase"], parts["mean"], lat, lon, "foreman"
+    )
+    start, end = (float(x) for x in arrays["record"])
+    return harmonic_analysis.TideAnalysis(constants, parts["share"], parts["variance"], start, end)

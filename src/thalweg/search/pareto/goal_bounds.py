@@ -10,7 +10,7 @@ import numpy as np
 from thalweg.core.pareto_fronts import lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import CURRENT_EAST, CURRENT_NORTH
-from thalweg.kernels.network.graph_building import static_dijkstra
+from thalweg.kernels.network.static_paths import static_astar
 from thalweg.kernels.pareto.edge_tables import largest_edge_currents
 from thalweg.search.pareto.front_problem import FrontProblem
 from thalweg.search.search_problem import ROUNDING_FACTOR
@@ -105,7 +105,8 @@ class BackwardSearch:
         distance = np.empty(count)
         parent = np.empty(count, np.int64) if parent is None else parent
         given = np.ascontiguousarray(weights[self._order])
-        static_dijkstra(self._indptr, self._target, given, self._goal, -1, distance, parent)
+        none = np.zeros(count)  # the potential of a search to all states
+        static_astar(self._indptr, self._target, given, none, self._goal, -1, distance, parent)
         return distance
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
+from thalweg.route.route_tables import vector_direction
 from thalweg.sea import standard_names as nm
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ def route_profile(route: Route) -> dict[str, Any]:
     -------
     dict
         ``time`` [s since 1970], with begin and end of each wait under way, and columns of equal
-        length whose names end with their unit; None where a value is unknown. Columns without any
-        known value are left out.
+        length whose names end with their unit; None where a value is unknown, and for the direction
+        of a wind or current of no speed. Columns without any known value are left out.
     """
     samples, still = _with_waits(route)
     time = np.asarray(samples["time"], float)
@@ -58,12 +59,13 @@ def route_profile(route: Route) -> dict[str, Any]:
         if all(part in samples for part in pair):
             east, north = (np.asarray(samples[part], float)[take] for part in pair)
             _add(columns, f"{name}_speed_kn", np.hypot(east, north) / KNOT, 2)
-            turn = 180.0 if name == "wind" else 0.0
-            word = "from" if name == "wind" else "to"
-            _add(columns, f"{name}_{word}_deg", _bearing(east, north, turn), 0)
+            if name == "wind":
+                _add(columns, "wind_from_deg", vector_direction(-east, -north), 0)
+            else:
+                _add(columns, "current_to_deg", vector_direction(east, north), 0)
     if all(part in samples for part in nm.WAVES.pair):
         east, north = (np.asarray(samples[part], float)[take] for part in nm.WAVES.pair)
-        _add(columns, "waves_from_deg", _bearing(east, north, 180.0), 0)
+        _add(columns, "waves_from_deg", vector_direction(-east, -north), 0)
     motion = next((name for name in samples if name.startswith(_COMFORT)), None)
     if motion is not None:  # of the first place of the ship file
         felt = np.asarray(samples[motion], float)[take]
@@ -92,10 +94,6 @@ def _thinned(time: FloatArray) -> Any:
     if len(known) <= MOST_POINTS:
         return known
     return known[np.unique(np.linspace(0, len(known) - 1, MOST_POINTS).round().astype(int))]
-
-
-def _bearing(east: FloatArray, north: FloatArray, turn: float) -> FloatArray:
-    return np.asarray((np.degrees(np.arctan2(east, north)) + turn) % 360.0)
 
 
 def _add(columns: dict[str, Any], name: str, values: FloatArray, decimals: int) -> None:

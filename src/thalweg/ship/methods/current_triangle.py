@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -150,23 +152,15 @@ def _monotone_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 _NODE_ANGLES_DEG, _NODE_DRAG = np.array(LUEBKE_ANGLES_DEG), np.array(LUEBKE_DRAG)
-_NODE_SLOPES = np.clip(_monotone_slopes(_NODE_ANGLES_DEG, _NODE_DRAG), 0.0, None)
 
 
-def _interpolated_drag(degrees: FloatArray) -> FloatArray:
-    """Return the monotone cubic through the nodes."""
-    i = np.clip(
-        np.searchsorted(_NODE_ANGLES_DEG, degrees, side="right") - 1, 0, _NODE_ANGLES_DEG.size - 2
-    )
-    h = _NODE_ANGLES_DEG[i + 1] - _NODE_ANGLES_DEG[i]
-    t = (degrees - _NODE_ANGLES_DEG[i]) / h
-    value: FloatArray = (
-        (1.0 + 2.0 * t) * (1.0 - t) ** 2 * _NODE_DRAG[i]
-        + t * (1.0 - t) ** 2 * h * _NODE_SLOPES[i]
-        + t**2 * (3.0 - 2.0 * t) * _NODE_DRAG[i + 1]
-        + t**2 * (t - 1.0) * h * _NODE_SLOPES[i + 1]
-    )
-    return value
+@cache
+def _drag_curve() -> Callable[[FloatArray], FloatArray]:
+    """Return the monotone cubic through the nodes, a function of degrees."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    slopes = np.clip(_monotone_slopes(_NODE_ANGLES_DEG, _NODE_DRAG), 0.0, None)
+    return CubicHermiteSpline(_NODE_ANGLES_DEG, _NODE_DRAG, slopes)
 
 
 def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> FloatArray:
@@ -194,7 +188,7 @@ def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> FloatA
     degrees = np.degrees(np.abs(as_float_array(angle)))
     degrees = np.where(degrees <= LUEBKE_ANGLES_DEG[-1] + 1e-9, degrees, np.nan)
     if curve == "nodes":
-        return _interpolated_drag(degrees)
+        return np.asarray(_drag_curve()(degrees))
     quadratic = (3.0777e-4 * degrees + 5.5666e-3) * degrees + 6.54e-4
     return np.where(degrees == 0.0, 0.0, quadratic)
 

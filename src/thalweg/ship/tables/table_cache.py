@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
-import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+from thalweg.core.arrays.array_cache import load_or_make, remove_oldest
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import FloatArray
 from thalweg.ship.tables.output_curve import OUTPUT_CURVE_FIELDS, OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable
@@ -41,11 +40,7 @@ def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithM
     text = json.dumps([facts, _source_stamps()], sort_keys=True, default=str)
     name = hashlib.sha256(text.encode()).hexdigest()[:32]
     path = cache_folder("ship-tables") / f"{name}.npz"
-    found = _read(path)
-    if found is None:
-        found = build()
-        _write(path, found)
-    return found
+    return load_or_make(path, build, pack=_arrays, unpack=_table, clean=_remove_old_tables)
 
 
 def _source_stamps() -> list[tuple[str, int, int]]:
@@ -54,34 +49,27 @@ def _source_stamps() -> list[tuple[str, int, int]]:
     return [(str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files]
 
 
-def _read(path: Path) -> TableWithMaxima | None:
-    """Return the stored table; None if there is none or it is damaged."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            data = {name: file[name] for name in file.files}
-        parts = []
-        for p in range(int(data["count"])):
-            axes = tuple(int(axis) for axis in data[f"axes{p}"])
-            grids = tuple(data[f"grid{p}_{k}"] for k in range(len(axes)))
-            parts.append(
-                TablePart(axes, grids, data[f"values{p}"], float(data["squared_height_limit"][p]))
-            )
-        mean, p99, largest, samples = data["error"]
-        error = TableError(float(mean), float(p99), float(largest), int(samples))
-        finish = None
-        if "finish_points" in data:
-            arrays = (data[f"finish_{name}"] for name in OUTPUT_CURVE_FIELDS)
-            finish = OutputCurve("crossing" if data["falls"] else "curve", *arrays)
-        return PerformanceTable(tuple(parts), data["settings"], "", error, finish), data["top"]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        return None
+def _table(arrays: Mapping[str, NDArray[Any]]) -> TableWithMaxima:
+    parts = []
+    for p in range(int(arrays["count"])):
+        axes = tuple(int(axis) for axis in arrays[f"axes{p}"])
+        grids = tuple(arrays[f"grid{p}_{k}"] for k in range(len(axes)))
+        parts.append(
+            TablePart(axes, grids, arrays[f"values{p}"], float(arrays["squared_height_limit"][p]))
+        )
+    mean, p99, largest, samples = arrays["error"]
+    error = TableError(float(mean), float(p99), float(largest), int(samples))
+    finish = None
+    if "finish_points" in arrays:
+        curve = (arrays[f"finish_{name}"] for name in OUTPUT_CURVE_FIELDS)
+        finish = OutputCurve("crossing" if arrays["falls"] else "curve", *curve)
+    return PerformanceTable(tuple(parts), arrays["settings"], "", error, finish), arrays["top"]
 
 
-def _write(path: Path, kept: TableWithMaxima) -> None:
-    """Write a table; if the disk is full or not writable, the next run builds it again."""
+def _arrays(kept: TableWithMaxima) -> dict[str, NDArray[Any]]:
     table, top = kept
     parts, error, finish = table.parts, table.error, table.finish
-    arrays: dict[str, Any] = {
+    arrays: dict[str, NDArray[Any]] = {
         "count": np.array(len(parts)),
         "settings": table.settings,
         "squared_height_limit": np.array([part.squared_height_limit for part in parts]),
@@ -95,14 +83,8 @@ def _write(path: Path, kept: TableWithMaxima) -> None:
         arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
     if finish is not None:
         arrays |= {f"finish_{name}": getattr(finish, name) for name in OUTPUT_CURVE_FIELDS}
-    with contextlib.suppress(OSError):
-        with replacing_file(path) as file:
-            np.savez(file, **arrays)
-        _remove_oldest(path.parent)
+    return arrays
 
 
-def _remove_oldest(folder: Path) -> None:
-    """Remove the oldest tables beyond `MAX_FILES`."""
-    files = sorted(folder.glob("*.npz"), key=lambda file: file.stat().st_mtime)
-    for file in files[:-MAX_FILES]:
-        file.unlink(missing_ok=True)
+def _remove_old_tables(folder: Path) -> None:
+    remove_oldest(folder.glob("*.npz"), MAX_FILES)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from typing import Final
 
@@ -16,7 +15,6 @@ from thalweg.planning.pareto.waiting.wait_screening import WaitScreen
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.waiting_report import waiting_weather_warnings
 from thalweg.route import Route, Track
-from thalweg.sea.standard_names import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
 
 _MOST_LATER: Final = 0.3  # share of the time by which a route with other waits may arrive later
 _MOST_PLACES: Final = 16  # waypoints at which a wait is tried
@@ -124,12 +122,7 @@ def is_sheltered(
     sea, limits = context.sea, context.ship.limits
     time = begin[:, None] + lasting[:, None] * np.linspace(0.0, 1.0, _SAMPLES)
     place = lat[:, None], lon[:, None]
-    sheltered = np.ones(len(lat), bool)
-    if math.isfinite(limits.wave_height) and sea.provides(WAVE_HEIGHT):
-        height = sea.sample([WAVE_HEIGHT], time, *place)[WAVE_HEIGHT]
-        sheltered &= (height <= limits.wave_height).all(axis=1)
-    if math.isfinite(limits.wind_speed) and sea.provides(EASTWARD_WIND):
-        wind = sea.sample([EASTWARD_WIND, NORTHWARD_WIND], time, *place)
-        speed = np.hypot(wind[EASTWARD_WIND], wind[NORTHWARD_WIND])
-        sheltered &= (speed <= limits.wind_speed).all(axis=1)
-    return sheltered
+    if not all(sea.provides(name) for name in limits.limited_weather):
+        return np.zeros(len(lat), bool)
+    kept = limits.keeps_weather_limits(sea.sample(limits.limited_weather, time, *place))
+    return np.asarray(np.broadcast_to(kept, time.shape).all(axis=1))

@@ -62,7 +62,7 @@ def with_waits_long_enough(
         return route
     if not {violation.reason.split(":")[0] for violation in route.violations} <= _OPENING:
         return route
-    for wait, place in _places_of_waits(context, route):
+    for wait, place in _places_of_waits(route):
         found = _with_least_wait(context, route.track, wait, place, score, screen)
         if found is not None:
             return found
@@ -134,7 +134,7 @@ def _with_one_wait(
     return found if value(found) <= (1.0 + _WORTH) * value(route) else route
 
 
-def _places_of_waits(context: PlanningContext, route: Route) -> Iterator[tuple[np.ndarray, int]]:
+def _places_of_waits(route: Route) -> Iterator[tuple[np.ndarray, int]]:
     """Yield waits of a track, and at which waypoint they are lengthened."""
     wait = np.asarray(route.track.wait, float)
     together = np.zeros(wait.size)

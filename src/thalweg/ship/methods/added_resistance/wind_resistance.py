@@ -7,16 +7,15 @@ area above the water and are positive where the wind resists.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import resources
 from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.file_reading import table_rows
 from thalweg.core.types import FloatArray
 
 AIR_DENSITY: Final = 1.226  #: at 15 degC and 1013 hPa [kg/m3]
@@ -223,9 +222,8 @@ def blendermann_1994(
 
 
 def _ittc_curves() -> Mapping[str, tuple[FloatArray, FloatArray]]:
-    file = resources.files("thalweg.ship.methods").joinpath("data", "ittc_wind_curves.csv")
     curves: dict[str, list[tuple[float, float]]] = {}
-    for row in csv.DictReader(file.read_text("utf-8").splitlines()):
+    for row in table_rows("thalweg.ship.methods", "ittc_wind_curves.csv"):
         point = float(row["angle_deg"]), float(row["coefficient"])
         curves.setdefault(row["curve"], []).append(point)
     return {name: (*np.array(points).T,) for name, points in curves.items()}

@@ -9,16 +9,15 @@ the tests.
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_reading import table_rows
 from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.methods.validity import RangeNote, range_notes
@@ -347,9 +346,8 @@ def polynomial_terms(quantity: SeriesQuantity) -> FloatArray:
     ndarray : Shape ``(terms, 6)``: the coefficient, and the powers of J, P/D, A_E/A_0, Z and
         log10(Rn) - 0.301; read-only.
     """
-    file = resources.files("thalweg.ship.methods").joinpath("data", "b_series_coefficients.csv")
-    lines = file.read_text(encoding="utf-8").splitlines()
-    rows = [row for row in csv.DictReader(lines) if row["quantity"] == quantity]
+    table = table_rows("thalweg.ship.methods", "b_series_coefficients.csv")
+    rows = [row for row in table if row["quantity"] == quantity]
     terms = np.array([[float(row[column]) for column in _COLUMNS] for row in rows])
     terms.flags.writeable = False
     return terms

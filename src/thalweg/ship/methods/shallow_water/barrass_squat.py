@@ -91,7 +91,8 @@ def barrass_squat(
 
     Returns
     -------
-    ndarray : Squat s [m], 0 at rest; infinite where the ship fills the waterway.
+    ndarray : Squat s [m], 0 at rest; under way infinite where the ship fills the waterway. NaN
+        where the depth is unknown.
 
     References
     ----------
@@ -103,7 +104,7 @@ def barrass_squat(
     with np.errstate(invalid="ignore"):
         return np.where(
             knots == 0.0,
-            0.0 * blockage,
+            np.where(np.isnan(blockage), np.nan, 0.0),
             _squat_at_one_knot(blockage, block_coefficient) * knots**_SPEED_EXPONENT,
         )
 
