@@ -24,6 +24,7 @@ from thalweg.kernels.codes import (
     LIMIT_REQUIRED_DEPTH,
     LIMIT_WAVE_HEIGHT,
     LIMIT_WIND_SPEED,
+    WATER_LEVEL,
     WIND_EAST,
 )
 from thalweg.kernels.compilation.decorators import kernel_only
@@ -350,6 +351,8 @@ def closed_throughout(world, windows, closed, closing):
     """
     buffers = make_buffers()
     limited = has_limits(world)
+    lowest = _lowest_water_level(world)
+    required = world.ship.limits[LIMIT_REQUIRED_DEPTH]
     for j in range(closed.shape[0]):
         for i in range(closed.shape[1]):
             closing[j, i] = False
@@ -358,7 +361,22 @@ def closed_throughout(world, windows, closed, closing):
                 instants, is_open, _, winds, _ = read_cell(world, j, i, first, last, buffers)
                 closed[j, i] = not is_open
                 if limited and is_open:
-                    closing[j, i] = instants < 0 or _may_close(world, winds, buffers)
+                    shallow = world.deepest[j, i] + lowest < required
+                    closing[j, i] = instants < 0 or shallow or _may_close(world, winds, buffers)
+
+
+@kernel_only
+def _lowest_water_level(world):
+    """Return the lowest water level at any node and time [m]; 0 without levels."""
+    channel = world.raster.channel_index[WATER_LEVEL]
+    if channel < 0:
+        return 0.0
+    values, lowest = world.raster.values, math.inf
+    for t in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            for i in range(values.shape[2]):
+                lowest = min(lowest, values[t, j, i, channel])
+    return lowest - world.margins[WATER_LEVEL] if lowest < math.inf else 0.0
 
 
 @kernel_only

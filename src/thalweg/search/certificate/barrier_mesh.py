@@ -11,12 +11,18 @@ import numpy as np
 
 from thalweg.core.ellipsoid import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 from thalweg.core.geodesy import distance, longitude_difference
-from thalweg.core.types import FloatArray
+from thalweg.core.types import Float32Array, FloatArray
 from thalweg.kernels.certificate.cell_conditions import BarrierWorld
-from thalweg.kernels.codes import CHANNEL_COUNT, CURRENT_EAST, CURRENT_NORTH
+from thalweg.kernels.codes import (
+    CHANNEL_COUNT,
+    CURRENT_EAST,
+    CURRENT_NORTH,
+    LIMIT_REQUIRED_DEPTH,
+)
 from thalweg.kernels.leg.point_speed import ShipArrays
 from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed
+from thalweg.search.certificate.charted_depths import greatest_depths
 from thalweg.search.certificate.closed_water import closed_cells
 
 if TYPE_CHECKING:
@@ -166,7 +172,7 @@ def build_mesh(
         east,
         north,
         closed_cells(chart, lat, lon, kept_out),
-        np.full((lat.size - 1, lon.size - 1), np.inf, np.float32),
+        _deepest(chart, ship, lat, lon),
         ShipArrays(ship.table, ship.setting, ship.limits, int(axes_needed(ship.table))),
         ship.top_speed,
         departures,
@@ -174,6 +180,15 @@ def build_mesh(
         np.zeros(CHANNEL_COUNT) if margins is None else margins,
     )
     return BarrierMesh(lat, lon, world, _links(chart, lat, lon))
+
+
+def _deepest(
+    chart: Chart | None, ship: ShipInBarrier, lat: FloatArray, lon: FloatArray
+) -> Float32Array:
+    """Return the greatest charted depth in each cell [m]; +inf where the ship needs none."""
+    if chart is None or not chart.depths.layers or not ship.limits[LIMIT_REQUIRED_DEPTH] > 0.0:
+        return np.full((lat.size - 1, lon.size - 1), np.inf, np.float32)
+    return greatest_depths(chart.depths, lat, lon)
 
 
 def _links(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> tuple[BarrierLink, ...]:
