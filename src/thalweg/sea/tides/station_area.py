@@ -40,7 +40,7 @@ def split_area(source: Any) -> tuple[Any, BoundingBox | None]:
     ------
     InputError : If the four numbers are no box.
     """
-    if not isinstance(source, (str, os.PathLike)) or Path(source).exists():
+    if not isinstance(source, (str, os.PathLike)) or os.path.exists(source):
         return source, None
     found = _WITH_AREA.match(os.fspath(source))
     if found is None:
