@@ -118,7 +118,7 @@ def test_a_distance_names_passages_that_its_draught_closes():
             "Valdez",
             12.0,
             "No largest draught in Valdez, US is known, nor the depth along its "
-            "approach of 25 nm: ask the port.",
+            "approach of 21 nm: ask the port.",
         ),
         ("Valdez", 8.5, None),
     ],
