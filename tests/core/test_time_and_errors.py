@@ -19,6 +19,7 @@ from thalweg.core.errors import (
     InputError,
     NoRouteError,
     close_matches,
+    names_in_words,
     reasons_text,
     refuse_other_file,
     unknown_name_error,
@@ -196,3 +197,8 @@ def test_a_file_of_another_kind_is_named(entries, wanted, words):
     with pytest.raises(InputError, match=words) as caught:
         refuse_other_file(data, wanted)
     assert f"{wanted} is needed" in caught.value.asked
+
+
+def test_names_are_listed_in_words():
+    listed = [names_in_words(names) for names in (["A"], ["A", "B"], ("A", "B", "C"))]
+    assert listed == ["A", "A and B", "A, B and C"]

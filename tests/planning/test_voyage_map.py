@@ -21,7 +21,12 @@ from thalweg.planning.plots.map_extent import (
     inverse_mercator,
     mercator,
 )
-from thalweg.planning.plots.map_labels import LabelPlacer, marked_times, time_label
+from thalweg.planning.plots.map_labels import (
+    LabelPlacer,
+    at_other_places,
+    marked_times,
+    time_label,
+)
 from thalweg.planning.plots.map_overlays import _draw_arrow, draw_zones, place_labels
 from thalweg.planning.plots.route_profile import LIMIT_COLOUR, draw_profile
 from thalweg.planning.plots.voyage_map import draw_map, time_when_nearest
@@ -386,3 +391,10 @@ def test_arrows_of_lanes_end_at_the_edge_of_the_map():
     _draw_arrow(axes, (53.0, 3.9), (53.4, 4.5), 0.0)
     (arrow,) = axes.texts
     assert arrow.arrow_patch.get_clip_box() is not None
+
+
+def test_times_of_a_wait_are_marked_once():
+    """Hours of a wait at the start stood round its name, one beside the other."""
+    lon, lat = np.array([3.1, 3.1, 3.1, 3.3, 3.3]), np.array([51.6, 51.6, 51.6, 51.6, 51.7])
+    assert at_other_places(lon, lat).tolist() == [True, False, False, True, True]
+    assert at_other_places(lon[:0], lat[:0]).tolist() == []

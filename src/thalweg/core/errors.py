@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -158,6 +158,11 @@ def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     shared += _sharing_a_word(word, by_lower)
     alike = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
     return [by_lower[name] for name in list(dict.fromkeys([*shared, *alike]))[:count]]
+
+
+def names_in_words(names: Sequence[str]) -> str:
+    """Return names, one or more, as a list in words: ``A, B and C``."""
+    return " and ".join([*filter(None, [", ".join(names[:-1])]), names[-1]])
 
 
 _MOST_NAMES = 20  # that an error lists, the nearest in spelling first if there are more

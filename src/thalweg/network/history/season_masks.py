@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.core.errors import names_in_words
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 
 MONTHS: Final = 12
@@ -82,7 +83,7 @@ def month_notes(seen: BoolArray, month: int | None) -> tuple[str, ...]:
     if month is None or seen[month - 1] or not seen.any():
         return ()
     names = [_NAMES[k] for k in np.flatnonzero(seen).tolist()]
-    known = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    known = names_in_words(names)
     return (
         f"No voyages were seen in {_NAMES[month - 1]}: the tracks have voyages in {known} only. "
         "All ways that were sailed in any month are taken as open.",

@@ -12,6 +12,7 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import canals_with_dues
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.chart.passages import PASSAGES
+from thalweg.core.errors import names_in_words
 from thalweg.planning.indicators.route_differences import line_at_shares, lines_differ
 from thalweg.planning.indicators.route_figures import (
     COMPARED_FIGURES,
@@ -174,7 +175,7 @@ def _label(route: Route, names: Sequence[str], has_canals: bool) -> str:
     )
     where = "direct" if not np.isfinite(share) else where
     called = [_with_article(name) for name in names]
-    by = " and ".join(filter(None, (", ".join(called[:-1]), *called[-1:])))
+    by = names_in_words(called) if called else ""
     if by and has_canals:
         return f"by {by}"
     return f"{where} by {by}" if by else where

@@ -8,6 +8,7 @@ from typing import Final
 from thalweg.chart import Chart
 from thalweg.chart.canals import Canal
 from thalweg.chart.passage_crossings import CAPES
+from thalweg.core.errors import names_in_words
 from thalweg.core.time import utc_text
 from thalweg.planning.indicators.route_choices import passages_of
 from thalweg.planning.indicators.route_differences import line_at_shares, lines_differ
@@ -102,12 +103,13 @@ def _passage_notes(chart: Chart, routes: Sequence[Route], chosen: Sequence[Route
     notes = []
     if by_all:
         notes.append(
-            f"{NOT_OFFERED}: ways without {_listed(by_all)}: the network along the fastest route "
-            "has none that keep the limits and the lanes (plan with --avoid NAME for another one)."
+            f"{NOT_OFFERED}: ways without {names_in_words(by_all)}: the network along the fastest "
+            "route has none that keep the limits and the lanes (plan with --avoid NAME for another "
+            "one)."
         )
     if others:
         why = "those found are best in no figure of the table."
-        notes.append(f"{NOT_OFFERED}: ways without {_listed(others)}: {why}")
+        notes.append(f"{NOT_OFFERED}: ways without {names_in_words(others)}: {why}")
     return notes
 
 
@@ -129,8 +131,3 @@ def _other_water_notes(routes: Sequence[Route], chosen: Sequence[Route]) -> list
 def _note(title: str, why: str) -> str:
     """Return the note on a canal."""
     return f"{NOT_OFFERED}: a way without the {title}: {why}" + ("" if why[-1] == "." else ".")
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names as a list in words."""
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.time import format_time
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import DAY, HOUR
 
 _INK = "#22303c"
 _OFFSETS = [(0, 9), (0, -9), (9, 0), (-9, 0), (8, 7), (-8, 7), (8, -7), (-8, -7), (0, 18), (0, -18)]
+_SAME_PLACE = 1e-6  # [deg]
 _CLEAR = 4.0  # room between labels and lines [display units]
 _STEPS_H = (0.25, 0.5, 1.0, 2.0, 3.0, 6.0, 12.0, 24.0, 48.0, 96.0, 240.0)
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
@@ -93,6 +95,12 @@ def marked_times(start: float, end: float, most: int = 9) -> tuple[np.ndarray, f
     span = max(end - start, 1.0)
     step = next((HOUR * s for s in _STEPS_H if span / (HOUR * s) <= most), HOUR * _STEPS_H[-1])
     return np.arange(math.ceil(start / step), math.floor(end / step) + 1) * step, step
+
+
+def at_other_places(lon: FloatArray, lat: FloatArray) -> BoolArray:
+    """Return which marks along a route (n,) [deg] are not where the one before is: a ship waits."""
+    away = np.hypot(np.diff(lon), np.diff(lat)) > _SAME_PLACE
+    return np.append(True, away)[: len(lon)]
 
 
 def time_label(time: float, step: float) -> str:

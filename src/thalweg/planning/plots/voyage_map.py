@@ -14,7 +14,13 @@ from thalweg.core.geodesy import geocentric_unit_vectors, wrap_longitude
 from thalweg.core.time import duration_text, utc_text
 from thalweg.core.units import HOUR, KNOT
 from thalweg.planning.plots.map_extent import MapExtent
-from thalweg.planning.plots.map_labels import LabelPlacer, drawn_texts, marked_times, time_label
+from thalweg.planning.plots.map_labels import (
+    LabelPlacer,
+    at_other_places,
+    drawn_texts,
+    marked_times,
+    time_label,
+)
 from thalweg.planning.plots.map_overlays import (
     draw_enclosed_water,
     draw_land,
@@ -259,6 +265,7 @@ def _label(
     lines.append(np.column_stack([x, samples["lat"]]))
     times, step = _times_on_route(best)
     lon, lat = (np.interp(times, samples["time"], line) for line in (x, samples["lat"]))
+    times, lon, lat = (part[at_other_places(lon, lat)] for part in (times, lon, lat))
     if len(times):
         axes.plot(lon, lat, "o", mfc="white", mec=ROUTE_COLOUR, mew=1.0, ms=3.5, zorder=6)
         lines.append(np.repeat(np.column_stack([lon, lat]), _MARKER_POINTS, axis=0))

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.chart.canals import Canal
 from thalweg.chart.passage_crossings import passages_crossed
 from thalweg.chart.passages import Passage
+from thalweg.core.errors import names_in_words
 from thalweg.core.geodesy import Position
 from thalweg.planning.seaways import Seaways
 
@@ -60,9 +61,8 @@ def _note_on_alike(names: Sequence[str], reason: str) -> str:
     if len(names) == 1:
         why = reason if reason.startswith(names[0]) else f"{names[0]}: {reason}"
         return f"{PASSAGE_CLOSED}: {why}"
-    listed = f"{', '.join(names[:-1])} and {names[-1]}"
     reason = re.sub(r"^it is\b", "they are", reason)
-    return f"{PASSAGES_CLOSED}: {listed}: {reason}"
+    return f"{PASSAGES_CLOSED}: {names_in_words(names)}: {reason}"
 
 
 def title_of_way(way: NarrowWay) -> str:

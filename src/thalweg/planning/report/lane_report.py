@@ -11,6 +11,7 @@ from thalweg.chart import Chart
 from thalweg.chart.zones.missing_schemes import seas_with_other_schemes
 from thalweg.chart.zones.traffic_schemes import INSHORE, PORT_RADIUS, TRAFFIC_SCHEMES
 from thalweg.core.arrays.leg_ends import leg_ends
+from thalweg.core.errors import names_in_words
 from thalweg.core.geodesy import densify, distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
@@ -81,8 +82,9 @@ def _other_schemes_text(route: Route) -> str:
     seas = seas_with_other_schemes(lat, lon)
     if not seas:
         return "Others are not known here: look for them in the chart."
-    listed = " and ".join([", ".join(seas[:-1]), seas[-1]][not seas[:-1] :])
-    return f"The charts have others in or off {listed}: keep their lanes by the chart."
+    return (
+        f"The charts have others in or off {names_in_words(seas)}: keep their lanes by the chart."
+    )
 
 
 def lane_detour_notes(
@@ -141,8 +143,7 @@ def _listed(names: Mapping[str, Sequence[str]]) -> str:
     parts = []
     for what, places in names.items():
         known = list(dict.fromkeys(places))
-        several = ", ".join(known[:-1]) + " and " if len(known) > 1 else ""
-        parts.append(f"the {what}{'s' if several else ''} of {several}{known[-1]}")
+        parts.append(f"the {what}{'s' if len(known) > 1 else ''} of {names_in_words(known)}")
     return " and ".join(parts)
 
 
