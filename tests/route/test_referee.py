@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from tests.route.planar import EAST, NORTH, Plane, ship
+from thalweg.chart import Chart
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError, OutsidePeriodError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import KNOT
@@ -396,3 +397,22 @@ def test_invalid_arguments_are_refused(wrong):
     given = {"ship": Ship.simple(speed_kn=8.0, draught_m=5.0), "sea": Sea.calm(), "depart": 0.0}
     with pytest.raises(InputError):
         evaluate([(51.0, 1.0), (51.5, 2.0)], **{**given, **wrong})
+
+
+@pytest.mark.parametrize(("low", "feasible"), [(2.0, True), (1.5, False)])
+def test_a_bar_of_the_chart_counts_under_a_coarse_sea(low, feasible):
+    """Levels at nodes 0.6 degrees apart had two points of check on a leg: none was on the bar."""
+    named = {"standard_name": "sea_floor_depth_below_geopotential_datum", "units": "m"}
+    bed = np.full((31, 201), 20.0)
+    bed[:, 95:106] = 5.0
+    axes = {"lat": 51.3 + 0.02 * np.arange(31), "lon": 3.0 + 0.005 * np.arange(201)}
+    chart = Chart.open_water().with_depth(xr.Dataset({"bed": (("lat", "lon"), bed, named)}, axes))
+    levels = ("time", "lat", "lon"), np.full((2, 2, 2), low), {"standard_name": LEVEL, "units": "m"}
+    days = np.array(["2026-06-01", "2026-06-03"], "datetime64[ns]")
+    level = xr.Dataset({"zos": levels}, {"time": days, "lat": [51.3, 51.9], "lon": [3.0, 4.0]})
+    coaster = Ship.simple(10.0, 5.0)
+    track = [(51.6, 3.1), (51.6, 3.9)]
+    sea, depart = Sea.open(level), "2026-06-01T06:00Z"
+    route = evaluate(track, ship=coaster, sea=sea, chart=chart, depart=depart, min_ukc=2.0)
+    assert route.min_ukc_m == pytest.approx(low, abs=1e-3)
+    assert route.feasible is feasible

@@ -98,6 +98,34 @@ def test_between_high_and_low_water_the_level_follows_half_a_cosine(tmp_path) ->
     assert sea.assumptions == (BETWEEN_TURNS,)
 
 
+@pytest.mark.parametrize(
+    ("hours", "levels", "between"),
+    [
+        ((0.0, 6.0, 12.0, 24.0, 30.0), (4.0, 0.5, 4.0, 4.0, 0.5), "12:00:00Z and .*T00:00:00Z"),
+        ((0.0, 6.0, 12.0, 24.4, 30.0), (4.0, 0.5, 4.0, 3.9, 0.5), "12:00:00Z and .*T06:00:00Z"),
+        ((0.0, 6.0, 24.0), (4.0, 0.5, 4.0), "06:00:00Z and .*T00:00:00Z"),
+        ((0.0, 6.0, 12.0, 18.0), (4.0, 0.5, "", 0.5), "06:00:00Z and .*12:00:00Z"),
+    ],
+)
+def test_a_table_that_lacks_a_water_is_refused(tmp_path, hours, levels, between) -> None:
+    """As a record it had 4 m between two high waters: a ship crossed a bar at low water."""
+    times = hydro.T0 + 3600.0 * np.array(hours)
+    with pytest.raises(InputError, match=f"lacks a high or low water.*{between}"):
+        Sea.open(station_file(tmp_path / "table.csv", times, levels))
+
+
+def test_two_rows_and_a_double_low_water_are_tables(tmp_path) -> None:
+    two = station_file(tmp_path / "two.csv", hydro.T0 + 3600.0 * np.array([0.0, 6.0]), [4.0, 0.5])
+    got = Sea.open(two).sample([LEVEL], hydro.T0 + 4.5 * 3600.0, 51.5, 3.5)[LEVEL]
+    assert float(got) == pytest.approx(1.013, abs=2e-3)
+    hours = np.array([0.0, 5.0, 6.5, 8.0, 12.333, 18.0])  # the agger of Hoek van Holland
+    agger = station_file(
+        tmp_path / "agger.csv", hydro.T0 + 3600.0 * hours, [2.0, 0.2, 0.3, 0.1, 2.1, 0.2]
+    )
+    got = Sea.open(agger).sample([LEVEL], hydro.T0 + 3600.0 * np.array([2.5, 5.75]), 51.5, 3.5)
+    assert got[LEVEL] == pytest.approx([1.1, 0.25], abs=2e-3)
+
+
 def test_constituents_of_one_station_hold_in_their_area(tmp_path) -> None:
     write_constituents(constants(1), tmp_path / "gauge.json")
     sea = Sea.open(f"{tmp_path / 'gauge.json'}@51,52,3,4.5")
@@ -111,6 +139,9 @@ def test_areas_that_are_none_and_files_that_are_missing_are_refused(tmp_path) ->
     source = station_file(tmp_path / "gauge.csv", hydro.T0 + 600.0 * np.arange(9.0), np.ones(9))
     with pytest.raises(InputError, match="not a valid box"):
         Sea.open(source.replace("51.0,52.0", "52.0,51.0"))
+    for area in ("51,52,3", "51,52,3,x", "51, 52, 3, 4", "51,52,4,3", "51,52,-170,170"):
+        with pytest.raises(InputError, match=r"four numbers of degrees"):
+            Sea.open(f"{tmp_path / 'gauge.csv'}@{area}")
     with pytest.raises(DatasetError, match=r"other.csv cannot be read"):
         Sea.open(source.replace("gauge", "other"))
     back = hydro.T0 + 600.0 * np.array([0.0, 2.0, 1.0])

@@ -87,6 +87,8 @@ def checked_points(
     at_sea = pieces.canals.number[leg] < 0
     share = (number / (count[leg] - 1))[at_sea]
     found = looked_at(leg[at_sea], share * pieces.length[leg[at_sea]])
+    if world.charted:  # a coarse sea has few points, and the bed may have a bar between two
+        found = found.joined(looked_at(*_in_other_pieces(sailed, found.points)))
     for _ in range(_ROUNDS):  # a slow ship meets much weather between two near points
         longer = _between_points(found, _longest_interval(sailed, found))
         if not len(longer[0]):
@@ -101,6 +103,15 @@ def checked_points(
         along = (begin[:, None] + (end - begin)[:, None] * shares).ravel()
         found = found.joined(looked_at(np.repeat(found.points.leg[first], _PARTS - 1), along))
     return found
+
+
+def _in_other_pieces(sailed: SailedTrack, points: TrackPoints) -> tuple[IntArray, FloatArray]:
+    """Return leg and distance along it [m] of a place in each piece at sea without a point."""
+    pieces, gauss = sailed.pieces, sailed.gauss
+    empty = np.ones(len(sailed.charted), bool)
+    empty[pieces.containing(points.leg, points.along)] = False
+    empty &= pieces.canals.number[gauss.leg[::2]] < 0
+    return gauss.leg[::2][empty], gauss.along[::2][empty]
 
 
 def _longest_interval(sailed: SailedTrack, checked: CheckedPoints) -> float:

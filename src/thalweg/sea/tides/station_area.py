@@ -15,6 +15,8 @@ import numpy as np
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import shortened_repr
+from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MINUTE
 from thalweg.sea import standard_names as nm
@@ -29,7 +31,9 @@ from thalweg.sea.tides.tide_records import TideRecord, read_record
 BETWEEN_TURNS: Final = "Between high and low water the level is assumed to follow half a cosine."
 _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?"
 _WITH_AREA: Final = re.compile(rf"(.+)@({_NUMBER}(?:,{_NUMBER}){{3}})\Z", re.S)
-_LEAST_BETWEEN_TURNS: Final = 2.5 * HOUR  # of the tide, from high to low water
+_LONGEST_STEP: Final = 2.5 * HOUR  # of a record; a table of high and low waters has longer ones
+_LONGEST_BETWEEN_TURNS: Final = 15.0 * HOUR  # of a diurnal tide, and some more
+_WIDEST: Final = 180.0  # box [deg]
 _STEP: Final = 10.0 * MINUTE  # of the curve between high and low water
 
 
@@ -42,11 +46,26 @@ def split_area(source: Any) -> tuple[Any, BoundingBox | None]:
     """
     if not isinstance(source, (str, os.PathLike)) or os.path.exists(source):
         return source, None
-    found = _WITH_AREA.match(os.fspath(source))
+    text = os.fspath(source)
+    found = _WITH_AREA.match(text)
     if found is None:
+        file, at, area = text.rpartition("@")
+        if at and os.path.isfile(os.path.expanduser(file)):
+            raise _area_error(area)
         return source, None
     south, north, west, east = (float(number) for number in found[2].split(","))
+    if not west < east < west + _WIDEST:
+        raise _area_error(found[2])
     return found[1], parse_area((south, north, west, east))
+
+
+def _area_error(area: str) -> InputError:
+    return InputError(
+        f"The area of a station is {shortened_repr(area)}.",
+        "It is four numbers of degrees without spaces, SOUTH,NORTH,WEST,EAST: west below east, "
+        f"{_WIDEST:g} degrees apart at most; over the date line such as 179,181.",
+        "Correct it.",
+    )
 
 
 def station_layers(path: Path, area: BoundingBox) -> tuple[tuple[Layer, ...], tuple[str, ...]]:
@@ -54,13 +73,13 @@ def station_layers(path: Path, area: BoundingBox) -> tuple[tuple[Layer, ...], tu
 
     Parameters
     ----------
-    path : Constituents of one station, or a record (`thalweg.sea.tides.tide_records`). A record of
-        water level whose steps are at least 2.5 hours and whose level rises and falls in turn is a
-        table of high and low waters.
+    path : Constituents of one station, or a record (`thalweg.sea.tides.tide_records`). A record
+        whose steps are above 2.5 hours, most of them, is a table of high and low waters.
 
     Raises
     ------
-    InputError : If the file has several stations, or a record has fewer than two times.
+    InputError : If the file has several stations, a record fewer than two times, or a table of high
+        and low waters lacks one.
     DatasetError : If the file cannot be read.
     """
     if is_constituent_file(path):
@@ -73,20 +92,37 @@ def station_layers(path: Path, area: BoundingBox) -> tuple[tuple[Layer, ...], tu
             "Correct the file.",
             file=str(path),
         )
-    turns = _has_only_turns(record)
+    turns = float(np.median(np.diff(record.times))) > _LONGEST_STEP
+    if turns:
+        _check_turns(record, path.name)
     times, series = _between_turns(record) if turns else (record.times, record.series)
     return tuple(open_layers((_dataset(times, series, area),), None, None)), (
         (BETWEEN_TURNS,) if turns else ()
     )
 
 
-def _has_only_turns(record: TideRecord) -> bool:
-    """Return whether a record holds high and low waters alone."""
-    if set(record.series) != {nm.WATER_LEVEL} or len(record.times) < 3:
-        return False
-    rise = np.sign(np.diff(record.series[nm.WATER_LEVEL]))
-    alternate = bool((rise[1:] * rise[:-1] == -1.0).all())
-    return alternate and float(np.diff(record.times).min()) >= _LEAST_BETWEEN_TURNS
+def _check_turns(record: TideRecord, name: str) -> None:
+    """Raise `InputError` where a record is no whole table of high and low waters."""
+    possible = (
+        "Rows hours apart are a table of high and low waters: the level rises and falls in turn, "
+        f"and rows are {_LONGEST_BETWEEN_TURNS / HOUR:g} hours apart at most. A record has steps "
+        f"of {_LONGEST_STEP / HOUR:g} hours at most."
+    )
+    if set(record.series) != {nm.WATER_LEVEL}:
+        raise InputError(f"{name} has currents in steps of hours.", possible, "Use shorter steps.")
+    level, apart = record.series[nm.WATER_LEVEL], np.diff(record.times)
+    turn = np.sign(np.diff(level))
+    wrong = np.isnan(turn) | (turn == 0.0) | (apart > _LONGEST_BETWEEN_TURNS)
+    again = np.append(False, turn[1:] == turn[:-1]) & ~wrong
+    if (wrong | again).any():
+        at = int(np.argmax(wrong | again))
+        ends = record.times[at - again[at]], record.times[at + 1]
+        between = " and ".join(format_time(float(time)) for time in ends)
+        raise InputError(
+            f"{name} lacks a high or low water, or a level, at or between {between}.",
+            possible,
+            "Add the row.",
+        )
 
 
 def _between_turns(record: TideRecord) -> tuple[FloatArray, dict[str, FloatArray]]:
