@@ -299,8 +299,9 @@ _ADVICE_SHALLOW = (
     "tide."
 )
 _ADVICE_TIDE = (
-    "Depart later, search a window of departures (--depart-window), or allow waiting for the tide; "
-    "or load less (--load-factor), or require less clearance (--ukc)."
+    "Depart later, use water levels that last longer, search a window of departures "
+    "(--depart-window), or permit waits where --no-wait forbids them; or load less "
+    "(--load-factor), or require less clearance (--ukc)."
 )
 _TOO_SLOW = "current too strong for the speed that the weather leaves"
 _ADVICE_STALL = (

@@ -25,7 +25,7 @@ from thalweg.sea.files.file_opener import open_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.tides.constituent_files import is_constituent_file, read_constituents
 from thalweg.sea.tides.tidal_layer import tidal_layers
-from thalweg.sea.tides.tide_records import TideRecord, read_record
+from thalweg.sea.tides.tide_records import TideRecord, is_text_record, read_record
 
 #: What states that the heights between high and low waters of a table are assumed.
 BETWEEN_TURNS: Final = "Between high and low water the level is assumed to follow half a cosine."
@@ -84,20 +84,39 @@ def station_layers(path: Path, area: BoundingBox) -> tuple[tuple[Layer, ...], tu
     """
     if is_constituent_file(path):
         return tidal_layers(read_constituents(path), area=area), ()
-    record = read_record(path)
-    if len(record.times) < 2 or not (np.diff(record.times) > 0.0).all():
+    if path.is_file() and not is_text_record(path):
         raise InputError(
-            f"{path.name} has {len(record.times)} times, or times that do not increase.",
-            "A series of one station has two times or more, each after the one before.",
-            "Correct the file.",
+            f"{path.name} is no text: an area cannot be given to it.",
+            "An area is for the tide of one station: constituents, a record or a tide table.",
+            "Name the file without its area, if it is a grid.",
             file=str(path),
         )
+    record = read_record(path)
+    _check_times(record, path)
     turns = float(np.median(np.diff(record.times))) > _LONGEST_STEP
     if turns:
         _check_turns(record, path.name)
     times, series = _between_turns(record) if turns else (record.times, record.series)
     return tuple(open_layers((_dataset(times, series, area),), None, None)), (
         (BETWEEN_TURNS,) if turns else ()
+    )
+
+
+def _check_times(record: TideRecord, path: Path) -> None:
+    """Raise `InputError` for a record of fewer than two times, or times that do not increase."""
+    back = np.flatnonzero(np.diff(record.times) <= 0.0)
+    if len(record.times) >= 2 and not len(back):
+        return
+    if len(back):
+        later, before = (format_time(float(record.times[back[0] + step])) for step in (1, 0))
+        fault = f"{later} after {before}"
+    else:
+        fault = f"{len(record.times)} times"
+    raise InputError(
+        f"{path.name} has {fault}.",
+        "A series of one station has two times or more, each later than the one before.",
+        "Correct the file.",
+        file=str(path),
     )
 
 

@@ -93,6 +93,7 @@ def read_record(
     path : path
         * CSV with a header: ``time`` (ISO 8601, UTC where no zone is written) and some of
           ``water_level`` [m], ``current_east`` and ``current_north`` [m/s]. Empty cells are gaps.
+          Columns may be separated by semicolons, and the decimals by commas then;
         * a NOOS series of water level, as Matroos writes it;
         * a DIA file with one series of water level at equal steps (clock UTC+1);
         * two columns of numbers without a header: days and water level.
@@ -220,8 +221,10 @@ def _missing_unit_and_epoch_error(table: FloatArray, source: str) -> InputError:
 def _read_csv(text: str, source: str) -> TideRecord:
     import pandas as pd
 
+    header = next((line for line in text.splitlines() if line.strip()[:1] not in ("", "#")), "")
+    form = {"sep": ";", "decimal": "," if "," in text else "."} if ";" in header else {}
     try:
-        table = pd.read_csv(io.StringIO(text), comment="#", skipinitialspace=True)
+        table = pd.read_csv(io.StringIO(text), comment="#", skipinitialspace=True, **form)
     except (ValueError, pd.errors.ParserError) as error:
         raise _record_file_error(source, f"cannot be read ({error})") from error
     by_name = {str(c).strip().lower(): c for c in table.columns}
