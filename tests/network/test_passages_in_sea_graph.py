@@ -21,6 +21,7 @@ ENDS_IN_SMALL_WATERS = {
     ("Maracaibo bar", "last"),
     ("Rio Grande bar (Lagoa dos Patos)", "last"),
     ("Beagle", "last"),
+    ("Midfjorden (Alesund to Molde)", "last"),
 }
 
 

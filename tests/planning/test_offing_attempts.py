@@ -34,8 +34,11 @@ def voyage(ends):
     return Voyage(start=start, goal=goal, depart="2026-06-01")
 
 
-def attempts(world, ends, *errors):
-    """Return the shoals that are open and the offing that is enough round ends, per attempt."""
+def attempts(world, ends, *errors, lengths=()):
+    """Return the shoals that are open and the offing that is enough round ends, per attempt.
+
+    ``lengths`` [nm] are of the first plans; those of others are 0.
+    """
     chart, _ = add_shoals(world, voyage(ends), SHIP, Sea.calm(), ends)
     tries, left = [], list(errors)
 
@@ -59,7 +62,14 @@ def attempts(world, ends, *errors):
 
     needs = Requirements((), Limits(), (), np.inf)
     context = PlanningContext(voyage(ends), SHIP, Sea.calm(), chart, needs, None, None)
-    return tries, plan_off_land(context, ends, OFFING, run).needs.notes
+    by_plan, left_lengths = {}, list(lengths)
+
+    def length_of(planned):
+        if id(planned) not in by_plan:
+            by_plan[id(planned)] = left_lengths.pop(0) if left_lengths else 0.0
+        return by_plan[id(planned)] * NAUTICAL_MILE
+
+    return tries, plan_off_land(context, ends, OFFING, run, length_of=length_of).needs.notes
 
 
 @pytest.mark.slow
@@ -100,3 +110,13 @@ def test_the_distance_from_land_is_smaller_only_round_the_end_that_needs_it(worl
     assert opened["Incheon"][1] == 15.0 and opened["Busan"][1] < 15.0
     assert all(np.isfinite(shoals) for shoals, _ in opened.values())
     assert not any(note.startswith(SHOALS_OPENED) for note in notes)
+
+
+@pytest.mark.parametrize(("second", "opened"), [(1900.0, True), (9500.0, False)])
+def test_a_way_far_round_the_shoals_gives_way_to_a_shorter_one_over_them(world, second, opened):
+    """Jakarta - Panjang was planned by Lombok, 1,342 nm for 136: flats near both ends."""
+    tries, notes = attempts(world, [COLOMBO, CHITTAGONG], lengths=(9000.0, second))
+    assert [one["Colombo"][0] for one in tries] == [8.0, 0.0]
+    found = [note for note in notes if note.startswith(SHOALS_OPENED)]
+    assert bool(found) == opened
+    assert all("with that water closed the route is 7" in note for note in found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeVar
 
@@ -26,6 +26,7 @@ from thalweg.planning.request.shoal_choice import (
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways
+from thalweg.route import Route
 
 Planned = TypeVar("Planned")
 
@@ -51,6 +52,8 @@ _OPEN: Final = math.inf
 _ROUND_ENDS: Final = tuple(miles * NAUTICAL_MILE for miles in (100.0, 250.0))  # where they open
 _NEAR_SHARE: Final = 0.3  # of the distance between the ends: what is farther is not near them
 _ENCLOSED: Final = 300.0 * NAUTICAL_MILE  # water that ends so near an end leaves it enclosed
+#: A plan longer than the way that ships take by this share and this length [m] is a detour.
+_DETOUR_SHARE, _DETOUR = 1.3, 30.0 * NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,8 @@ def plan_off_land(
     ends: Sequence[Endpoint],
     offing: float,
     run: Callable[[PlanningContext], Planned],
+    *,
+    length_of: Callable[[Planned], float],
 ) -> Planned:
     """Plan at an offing with shoals closed; where no route exists, with less of both.
 
@@ -94,6 +99,7 @@ def plan_off_land(
     context : With a chart without an offing.
     offing : [m].
     run : Plans with a context.
+    length_of : Returns the length of what was planned [m].
 
     Raises
     ------
@@ -102,12 +108,16 @@ def plan_off_land(
     if offing <= 0.0 or context.chart.coastline.is_empty:
         return run(context)
     refusal: NoRouteError | None = None
+    detour: Planned | None = None  # round shoals
+    usual = math.inf  # length of the way that ships take
     can_close = False
     cut_off = False  # whether the distance from land leaves no way from an end
     enclosed: tuple[int, ...] = ()
     waiting = _attempts(ends)
     while waiting:
         attempt = waiting.pop(0)
+        if detour is not None and attempt.shoals < _OPEN:
+            continue
         which = enclosed or (0, -1)
         if attempt.shoals < _OPEN and attempt.is_of_ends:
             near_end = cut_off if attempt.radius > 0.0 else bool(enclosed)
@@ -127,19 +137,23 @@ def plan_off_land(
             cut_off, enclosed = cut_off or bool(cut), (*enclosed, *cut)
             if not note:
                 continue
-            chart, reopened = open_sills(chart, ends)
+            chart, reopened, length = open_sills(chart, ends)
+            usual = length or math.inf
             notes += [reopened, note] if reopened else [note]
         elif attempt.areas:
             open_chart, chart = chart, close_exact_areas(chart, ends)
             if chart is open_chart:
                 continue
         if can_close and attempt.shoals > _CLOSED:
-            notes.append(_opened_note(attempt, [ends[number] for number in which]))
+            longer = 0.0 if detour is None else length_of(detour) - usual
+            notes.append(_opened_note(attempt, [ends[number] for number in which], longer))
         limits = replace(context.needs.limits, offing=kept)
         needs = replace(context.needs, limits=limits, notes=tuple(notes))
         try:
-            return run(replace(context, chart=chart, needs=needs))
+            found = run(replace(context, chart=chart, needs=needs))
         except NoRouteError as error:
+            if detour is not None:
+                return detour
             nearer = isinstance(error, NoPathError) or REASONS[DEPTH] in error.reasons
             if refusal is None and isinstance(error, NoPathError):
                 refusal = _closed_way(context, ends)
@@ -152,8 +166,26 @@ def plan_off_land(
             if attempt.is_of_ends and before and enclosed != before:
                 waiting.insert(0, attempt)  # once more, with the other end as well
             context.report_progress(_progress_text(attempt, kept))
+            continue
+        if attempt.shoals < _OPEN and _is_detour(length_of(found), usual):
+            detour = found
+            context.report_progress("the way round the shoals is much longer than that of ships")
+            continue
+        return found if detour is None or length_of(found) < length_of(detour) else detour
+    if detour is not None:
+        return detour
     assert refusal is not None  # the loop returned otherwise
     raise refusal
+
+
+def shortest_length(routes: Iterable[Route]) -> float:
+    """Return the length of the shortest route [m]; inf without routes."""
+    return min((route.distance_nm for route in routes), default=math.inf) * NAUTICAL_MILE
+
+
+def _is_detour(length: float, usual: float) -> bool:
+    """Return whether a way [m] is much longer than another one [m]."""
+    return length > max(_DETOUR_SHARE * usual, usual + _DETOUR)
 
 
 def _attempts(ends: Sequence[Endpoint]) -> list[_Attempt]:
@@ -184,11 +216,16 @@ def _with_enclosed_end(
     return known if one in known else (*known, one)
 
 
-def _opened_note(attempt: _Attempt, ends: Sequence[Endpoint]) -> str:
-    """Return a note on shoals that are open because no route leads round them."""
+def _opened_note(attempt: _Attempt, ends: Sequence[Endpoint], longer: float) -> str:
+    """Return a note on shoals that are open since no route, or one longer [m], is round them."""
     if attempt.shoals == _OPEN:
         but = ", but for named areas of exact outline" if attempt.areas else ""
-        return f"{SHOALS_OPENED}{but}: with that water closed no route was found. {_CHECK}"
+        why = (
+            f"with that water closed the route is {longer / NAUTICAL_MILE:.0f} nm longer"
+            if longer > 0.0
+            else "with that water closed no route was found"
+        )
+        return f"{SHOALS_OPENED}{but}: {why}. {_CHECK}"
     names = " and ".join(end.name for end in ends)
     return (
         f"{SHOALS_OPENED} within {attempt.shoals / NAUTICAL_MILE:.0f} nm of {names}: "

@@ -23,7 +23,7 @@ from thalweg.planning.approach_sailing import (
     plan_along_approaches,
     shared_line,
 )
-from thalweg.planning.offing_attempts import plan_off_land
+from thalweg.planning.offing_attempts import plan_off_land, shortest_length
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext
@@ -245,7 +245,10 @@ def _plan_with_approaches(context: PlanningContext, ends: list[Endpoint]) -> Pla
     sailing = ApproachSailing.of_voyage(context, ends)
     at_sea = sailing.context_at_sea(context)
     offing = chosen_offing(context.voyage, context.ship)
-    found = plan_off_land(at_sea, ends, offing, lambda c: _plan_at_sea(c, ends))
+    found = plan_off_land(
+        at_sea, ends, offing, lambda c: _plan_at_sea(c, ends),
+        length_of=lambda plan: shortest_length(plan.routes),
+    )  # fmt: skip
     return sailing.with_approaches(found, context.voyage, context)
 
 

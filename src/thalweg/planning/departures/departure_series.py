@@ -22,7 +22,7 @@ from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import line_length
 from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.units import HOUR
-from thalweg.network import Network, fixed_route
+from thalweg.network import Network, fixed_route, shortest_path
 from thalweg.planning.approach_sailing import ApproachSailing, shared_line
 from thalweg.planning.departures.network_figures import (
     ApproachFigures,
@@ -140,7 +140,7 @@ class DepartureSeries:
             )
 
         offing = chosen_offing(context.voyage, ship)
-        at_sea, networks = plan_off_land(at_sea, ends, offing, build)
+        at_sea, networks = plan_off_land(at_sea, ends, offing, build, length_of=_least_length)
         if any(np.isfinite(one.edges.fixed_time).any() for one in networks):
             raise _unsuitable("through canals")
         return cls(at_sea, ends, networks, approach_figures(sailing, context))
@@ -316,6 +316,12 @@ class DepartureSeries:
             If the data do not cover the departure.
         """
         return self.context.evaluate(self._path(float(depart)).track(self.context.setting))
+
+
+def _least_length(built: tuple[PlanningContext, tuple[Network, ...]]) -> float:
+    """Return the least length of a way over networks one after the other [m]."""
+    ends = [(one, one.meta.start, one.meta.goal) for one in built[1]]
+    return sum(float(shortest_path(one, start, goal)[0][goal]) for one, start, goal in ends)
 
 
 def _check_series(voyage: Voyage) -> None:

@@ -32,7 +32,7 @@ from thalweg.planning.network_selection.route_alternatives import (
     canals_used,
     network_of_all_ways,
 )
-from thalweg.planning.offing_attempts import plan_off_land
+from thalweg.planning.offing_attempts import plan_off_land, shortest_length
 from thalweg.planning.pareto.exploration import fastest_in_known_water, network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.search_horizon import FastestPaths, extend_horizon
@@ -76,7 +76,9 @@ def berth_to_berth_candidates(
     def search(off_land: PlanningContext) -> tuple[list[Route], list[str]]:
         return with_trade_off(off_land, ends, _feasible_candidates)
 
-    routes, notes = plan_off_land(at_sea, ends, offing, search)
+    routes, notes = plan_off_land(
+        at_sea, ends, offing, search, length_of=lambda found: shortest_length(found[0])
+    )
     sailed = SailedApproaches(sailing, context)
     return [sailed.joined(route) for route in routes], [*sailing.notes(context), *notes]
 

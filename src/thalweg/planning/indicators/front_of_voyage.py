@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from thalweg.chart import Chart
 from thalweg.chart.coast.gshhg import usual_resolution
-from thalweg.planning.offing_attempts import plan_off_land
+from thalweg.planning.offing_attempts import plan_off_land, shortest_length
 from thalweg.planning.pareto.indicator_front import IndicatorFront, search_indicator_front
 from thalweg.planning.pareto.trade_off_planner import with_trade_off
 from thalweg.planning.planning_context import PlanningContext
@@ -70,4 +70,7 @@ def indicator_front(
             off_land, ends, lambda own, found: search_indicator_front(own, found[0].network, of)
         )
 
-    return plan_off_land(at_sea, ends, chosen_offing(request, ship), search)
+    return plan_off_land(
+        at_sea, ends, chosen_offing(request, ship), search,
+        length_of=lambda front: shortest_length(front.routes),
+    )  # fmt: skip

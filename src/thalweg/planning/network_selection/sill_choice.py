@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import compress, pairwise
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import shapely
@@ -34,8 +34,23 @@ _SPACING: Final = 10.0 * NAUTICAL_MILE
 _TURNS: Final = (-360.0, 0.0, 360.0)
 
 
-def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
-    """Return the chart with the sills open that ships cross, and a note; empty for none.
+class OpenedSills(NamedTuple):
+    """A chart with its sills open.
+
+    Attributes
+    ----------
+    chart : The chart.
+    note : What was opened; empty for nothing.
+    length : Of the way that ships take, over the graph of all seas [m]; 0 where there is none.
+    """
+
+    chart: Chart
+    note: str
+    length: float
+
+
+def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> OpenedSills:
+    """Return the chart with the sills open that ships cross.
 
     Parameters
     ----------
@@ -44,21 +59,22 @@ def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
     zones = chart.zones
     closed = zones.closed_shoals
     if closed is None:
-        return chart, ""
+        return OpenedSills(chart, "", 0.0)
     seas = replace(Seaways.of_ship_chart(chart), shoals=zones.shoals)
     shapes = shapely.STRtree(closed.shapes)
     discs: list[OpenDisc] = []
-    deepest = 0.0
+    deepest, lengths = 0.0, []
     for start, goal in pairwise(ends):
         try:
             path = seas.graph_path(start, goal)
         except NoRouteError:
             continue
+        length, _ = path_length_and_canals(seas.chart, path)
+        lengths.append(length)
         cut = _crossed(shapes, *leg_ends(*np.array(path, float).T))
         crossing = list(compress(pairwise(path), cut))
         if not crossing or _in_named_area(crossing, closed.depth_of_areas):
             continue
-        length, _ = path_length_and_canals(seas.chart, path)
         try:
             round_it, _ = path_length_and_canals(
                 seas.chart,
@@ -69,8 +85,9 @@ def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
         if round_it > max(_LONGER * length, length + _DETOUR):
             discs += [(lat, lon, _RADIUS) for leg in crossing for lat, lon in _along(leg)]
             deepest = max(deepest, round_it - length)
+    whole = sum(lengths) if len(lengths) == len(ends) - 1 else 0.0
     if not discs:
-        return chart, ""
+        return OpenedSills(chart, "", whole)
     more = f"{deepest / NAUTICAL_MILE:,.0f} nm longer" if np.isfinite(deepest) else "not there"
     place = format_position(*_middle(discs, ends))
     note = (
@@ -79,7 +96,7 @@ def open_sills(chart: Chart, ends: Sequence[Endpoint]) -> tuple[Chart, str]:
         f"way round it is {more}."
     )
     closed = replace(closed, discs=(*closed.discs, *discs))
-    return replace(chart, zones=replace(zones, closed_shoals=closed)), note
+    return OpenedSills(replace(chart, zones=replace(zones, closed_shoals=closed)), note, whole)
 
 
 def _middle(discs: Sequence[OpenDisc], ends: Sequence[Endpoint]) -> Position:

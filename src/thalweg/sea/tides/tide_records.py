@@ -222,9 +222,11 @@ def _read_csv(text: str, source: str) -> TideRecord:
     import pandas as pd
 
     header = next((line for line in text.splitlines() if line.strip()[:1] not in ("", "#")), "")
-    form = {"sep": ";", "decimal": "," if "," in text else "."} if ";" in header else {}
+    separator, decimal = (";", "," if "," in text else ".") if ";" in header else (",", ".")
     try:
-        table = pd.read_csv(io.StringIO(text), comment="#", skipinitialspace=True, **form)
+        table = pd.read_csv(
+            io.StringIO(text), sep=separator, decimal=decimal, comment="#", skipinitialspace=True
+        )
     except (ValueError, pd.errors.ParserError) as error:
         raise _record_file_error(source, f"cannot be read ({error})") from error
     by_name = {str(c).strip().lower(): c for c in table.columns}
