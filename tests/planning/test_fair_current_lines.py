@@ -243,6 +243,5 @@ def test_a_bound_in_overlapping_files_is_not_above_the_routes_of_the_plan():
     chart = Chart.open_water(-0.5, 0.5, -0.4, 1.7)
     found = plan(voyage, ship=ship, sea=sea, chart=chart)
     assert found.lower_bound <= found.best.time_h
-    assert "overlapping files" in found.proof.kind or found.proof.kind.startswith("no bound")
     for route, value in zip(found.routes, found.front.values, strict=True):
         assert certain_at(found.front.certain, route.time_h) <= value * 1.001

@@ -130,3 +130,25 @@ def test_a_ship_that_reads_the_direction_of_waves_alone_has_a_route():
     off = np.linspace(0.0, 1.5, 10_001)  # she tacks at the angle of the best speed made good
     best = (6.0 * (1.0 - 0.5 * np.exp(-((off / 0.6) ** 2))) * np.cos(off)).max()
     assert found.best.time_h == pytest.approx(0.8 * 111_319.49 / best / 3600.0, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_a_bound_is_lowered_by_what_the_table_of_a_function_is_off():
+    """A narrow peak of speed at waves of 2.1 m was not in the table: a bound above a route."""
+    ship = Ship.from_speed_function(
+        lambda c: 4.0 + 4.0 * np.exp(-(((c.wave_height - 2.13) / 0.03) ** 2))
+    )
+    waves = {
+        nm.WAVE_HEIGHT: lambda t, y, x: 2.0 + 0.4 * y + 0.0 * x,
+        "sea_surface_wave_from_direction": lambda t, y, x: 90.0 + 0.0 * y,
+    }
+    found = plan(
+        Voyage(start=(0.0, 0.0), goal=(0.0, 0.8), depart="2026-01-01"),
+        ship=ship,
+        sea=Sea.from_functions(waves, time_step=0.0),
+        chart=Chart.open_water(-1.0, 1.0, -1.0, 2.0),
+    )
+    off = ship.tabulate().error.max
+    assert off > 0.01
+    assert f"a table of the ship's function, {off:.1%} off at most" in found.proof.kind
+    assert found.lower_bound <= (1.0 - off) * found.best.time_h * 1.001

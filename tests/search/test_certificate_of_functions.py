@@ -70,8 +70,8 @@ def test_margins_are_half_a_diagonal_and_half_a_step_times_the_rates():
     domain = BarrierDomain.around(where, 60)
     _, dlat, _, dlon = domain.raster.corner
     half = 0.5 * 111_700.0 * math.hypot(dlat, dlon)
-    margin = domain.margins[codes.CURRENT_EAST]
-    assert margin == domain.margins[codes.CURRENT_NORTH]
+    margin = domain.margins[0, 0, codes.CURRENT_EAST]
+    assert margin == domain.margins[0, 0, codes.CURRENT_NORTH]
     assert 0.97 * half * RATES[EAST][0] < margin <= half * RATES[EAST][0] * (1 + 1e-5)
     assert domain.strongest_current >= margin
     changing = Sea.from_functions(
@@ -81,7 +81,7 @@ def test_margins_are_half_a_diagonal_and_half_a_step_times_the_rates():
     )
     domain = BarrierDomain.around(replace(where, sea=changing), 60)
     step = float(np.diff(domain.raster.times).max())
-    assert domain.margins[codes.CURRENT_EAST] == pytest.approx(0.5 * step * 5e-4)
+    assert domain.margins[0, 0, codes.CURRENT_EAST] == pytest.approx(0.5 * step * 5e-4)
 
 
 def test_without_bounds_of_all_functions_or_with_an_area_samples_are_what_is_stated():
@@ -103,8 +103,8 @@ def test_a_limit_counts_with_the_margin_of_its_samples():
         sea = Sea.from_functions(waves, time_step=0.0)
         where = StretchToBound(sea, None, ship, channels, START, GOAL, 1e9, LENGTH / SPEED)
         domain = BarrierDomain.around(where, 24)
-        margins = np.zeros(codes.CHANNEL_COUNT)
-        margins[codes.WAVE_HEIGHT_CHANNEL] = low
+        margins = np.zeros((1, 1, codes.CHANNEL_COUNT))
+        margins[..., codes.WAVE_HEIGHT_CHANNEL] = low
         mesh = build_mesh(domain.raster, 1, domain.ship, None, margins=margins)
         shape = mesh.shape[0] - 1, mesh.shape[1] - 1
         closed, may_close = np.ones(shape, bool), np.zeros(shape, bool)

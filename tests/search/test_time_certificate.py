@@ -104,41 +104,56 @@ def test_a_jet_beyond_the_ellipse_of_the_ships_speed_is_in_the_bound():
     assert time_certificate.certify_time(stretch, seconds=1.0).value < by_jet < stretch.known
 
 
+def currents_to_the_east(lat, lon, east):
+    names = {"uo": "eastward_sea_water_velocity", "vo": "northward_sea_water_velocity"}
+    return xr.Dataset(
+        {
+            name: (("lat", "lon"), east * (name == "uo"), {"standard_name": names[name]})
+            for name in names
+        },
+        coords={
+            "lat": ("lat", lat, {"units": "degrees_north"}),
+            "lon": ("lon", lon, {"units": "degrees_east"}),
+        },
+    )
+
+
+def passage_beside_a_jet(*data) -> StretchToBound:
+    sea, ends = Sea.open(*data), ((0.0, 0.0), (0.0, 2.0))
+    return StretchToBound(
+        sea, None, ship_of_one_speed(5.0), CURRENTS, *ends, depart=1e9, known=44_550.0
+    )
+
+
 def passage_beside_a_jet_on_one_line() -> StretchToBound:
     lat, lon = np.arange(-50, 51) * 0.05, np.arange(-40, 81) * 0.05
     east = np.zeros((lat.size, lon.size))
     east[57] = 9.0  # 0.35 degrees off
-    names = {"uo": "eastward_sea_water_velocity", "vo": "northward_sea_water_velocity"}
-    sea = Sea.open(
-        xr.Dataset(
-            {
-                name: (("lat", "lon"), east * (name == "uo"), {"standard_name": names[name]})
-                for name in names
-            },
-            coords={
-                "lat": ("lat", lat, {"units": "degrees_north"}),
-                "lon": ("lon", lon, {"units": "degrees_east"}),
-            },
-        )
-    )
-    return StretchToBound(
-        sea,
-        None,
-        ship_of_one_speed(5.0),
-        CURRENTS,
-        (0.0, 0.0),
-        (0.0, 2.0),
-        depart=1e9,
-        known=44_550.0,
-    )
+    return passage_beside_a_jet(currents_to_the_east(lat, lon, east))
 
 
-def test_lines_left_out_in_the_search_for_the_greatest_speed_are_stated(monkeypatch):
-    """The jet is on one line of the data, which is read only in the water near the way."""
+@pytest.mark.parametrize("rows", [0.01, 0.013])
+def test_a_jet_in_the_finer_of_two_files_counts(rows):
+    """The finer file had rows closer than columns: its lines were not used, and its jet not seen."""
+    lat, lon = 0.35 + rows * np.arange(-5, 6), np.arange(5, 36) * 0.05
+    east = np.zeros((lat.size, lon.size))
+    east[5] = 9.0
+    wide = np.arange(-20, 21) * 0.25, np.arange(-16, 33) * 0.25
+    calm = currents_to_the_east(*wide, np.zeros((wide[0].size, wide[1].size)))
+    stretch = passage_beside_a_jet(currents_to_the_east(lat, lon, east), calm)
+    by_jet = 2.0 * float(distance(0.0, 0.0, 0.35, 0.25)) / 5.0
+    by_jet += float(distance(0.35, 0.25, 0.35, 1.75)) / 14.0
+    found = time_certificate.certify_time(stretch, seconds=10.0)
+    assert found.sampling == ""
+    assert 0.9 * by_jet < found.value < by_jet
+
+
+def test_lines_that_are_left_out_count_in_the_greatest_speed(monkeypatch):
+    """The jet is on one line of the data, between those of the raster."""
     monkeypatch.setattr(barrier_raster, "_MOST_CELLS", 1200)
     stretch = passage_beside_a_jet_on_one_line()
     domain = BarrierDomain.around(stretch, 60)
-    assert domain.fastest >= 14.0 or "lines of the data" in domain.sampling
+    assert domain.fastest >= 14.0 and domain.sampling == ""
 
 
 def test_data_that_decide_on_the_cells_are_not_read_again_for_finer_ones(monkeypatch):
@@ -154,7 +169,7 @@ def test_data_that_decide_on_the_cells_are_not_read_again_for_finer_ones(monkeyp
     before = len(frozen)  # of the greatest speed, which is kept, and of the domain
     found = time_certificate.certify_time(stretch, seconds=0.0)
     assert len(frozen) - before == 1
-    assert "lines of the data" in found.sampling
+    assert found.sampling == ""
     assert found.value == pytest.approx(stretch.length / domain.fastest, rel=1e-6)
 
 

@@ -155,7 +155,7 @@ def freeze_grid_fields(
     end: float,
     channels: Sequence[int],
     *,
-    spacing_deg: float,
+    spacing_deg: float | tuple[float, float],
     extra: Mapping[int, DerivedChannel] | None = None,
 ) -> GridFields:
     """Return the sea on a regular grid for kernels, at all native times of a window.
@@ -169,8 +169,9 @@ def freeze_grid_fields(
         Window [s since epoch]; frozen times reach one native step beyond it.
     channels : sequence of int
         Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
-    spacing_deg : float
-        Largest spacing [deg]; it is reduced so that the grid ends on the box.
+    spacing_deg : float or (float, float)
+        Largest spacing [deg], of rows and of columns; it is reduced so that the grid ends on the
+        box.
     extra : mapping of int to callable, optional
         Derived channels, as in `freeze_stations`.
 
@@ -188,15 +189,16 @@ def freeze_grid_fields(
         If the data have no time in the window.
     """
     south, north, west, east = area.south, area.north, area.west, area.east
-    if not (spacing_deg > 0.0 and north > south):
+    steps: FloatArray = np.broadcast_to(np.asarray(spacing_deg, np.float64), 2)
+    if not ((steps > 0.0).all() and north > south):
         raise InputError(
-            f"A grid with spacing {spacing_deg:g} deg from {south:g} to {north:g} N is empty.",
+            f"A grid with spacing {steps.min():g} deg from {south:g} to {north:g} N is empty.",
             "The spacing must be positive, and north must be above south.",
             "Correct the box or the spacing.",
         )
     width = (east - west) % 360.0 or 360.0
-    ny = max(2, int(np.ceil((north - south) / spacing_deg - 1e-9)) + 1)
-    nx = max(2, int(np.ceil(width / spacing_deg - 1e-9)) + 1)
+    ny = max(2, int(np.ceil((north - south) / steps[0] - 1e-9)) + 1)
+    nx = max(2, int(np.ceil(width / steps[1] - 1e-9)) + 1)
     dlat, dlon = (north - south) / (ny - 1), width / (nx - 1)
     rows, columns = np.meshgrid(
         south + dlat * np.arange(ny), west + dlon * np.arange(nx), indexing="ij"

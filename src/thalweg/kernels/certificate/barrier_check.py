@@ -12,6 +12,7 @@ from thalweg.kernels.certificate.cell_conditions import (
     SECTORS,
     cell_speeds,
     make_buffers,
+    margin_of_cell,
     read_cell,
 )
 from thalweg.kernels.certificate.known_limits import has_limits
@@ -206,7 +207,7 @@ def _kept_speeds(world, j, i, first, last, found, buffers, kept):
     """
     instants, field_high, winds, waves = found
     if instants < 0 or kept.speed.shape[0] == 0:
-        top, disc = cell_speeds(world, instants, field_high, winds, waves, buffers)
+        top, disc = cell_speeds(world, (j, i), found, buffers)
         return top, disc, False
     sectors = kept.speed.shape[2]
     inside = kept.first[j, i] <= first and last <= kept.last[j, i]
@@ -218,7 +219,8 @@ def _kept_speeds(world, j, i, first, last, found, buffers, kept):
         return top, sectors == 1, False
     first, last = first - kept.longer, last + kept.longer
     instants, is_open, field_high, winds, waves = read_cell(world, j, i, first, last, buffers)
-    top, disc = cell_speeds(world, instants, field_high, winds, waves, buffers)
+    found = instants, field_high, winds, waves
+    top, disc = cell_speeds(world, (j, i), found, buffers)
     if instants >= 0 and is_open:
         kept.first[j, i], kept.last[j, i] = first, last
         for k in range(sectors):
@@ -260,7 +262,7 @@ def _check_cell(world, phi, cell, window, forward, strict, buffers, kept):
     sign = 1.0 if forward else -1.0
     if instants < 0:  # a window of too many instants
         return math.inf, 0.25 * (a + b + c + d)
-    drift = world.margins[CURRENT_EAST]
+    drift = margin_of_cell(world, j, i, CURRENT_EAST)
     strongest = replace_unknown_currents(buffers.current, instants) + drift
     dlat = world.raster.corner[1] / world.refinement
     dlon = world.raster.corner[3] / world.refinement
@@ -362,7 +364,9 @@ def closed_throughout(world, windows, closed, closing):
                 closed[j, i] = not is_open
                 if limited and is_open:
                     shallow = world.deepest[j, i] + lowest < required
-                    closing[j, i] = instants < 0 or shallow or _may_close(world, winds, buffers)
+                    closing[j, i] = (
+                        instants < 0 or shallow or _may_close(world, (j, i), winds, buffers)
+                    )
 
 
 @kernel_only
@@ -376,11 +380,15 @@ def _lowest_water_level(world):
         for j in range(values.shape[1]):
             for i in range(values.shape[2]):
                 lowest = min(lowest, values[t, j, i, channel])
-    return lowest - world.margins[WATER_LEVEL] if lowest < math.inf else 0.0
+    margin = 0.0
+    for j in range(world.margins.shape[0]):
+        for i in range(world.margins.shape[1]):
+            margin = max(margin, world.margins[j, i, WATER_LEVEL])
+    return lowest - margin if lowest < math.inf else 0.0
 
 
 @kernel_only
-def _may_close(world, winds, buffers):
+def _may_close(world, cell, winds, buffers):
     """Return whether a condition that was read in a cell is beyond a limit somewhere."""
     limits, index = world.ship.limits, world.raster.channel_index
     shallow = buffers.low[AXIS_DEPTH] < limits[LIMIT_REQUIRED_DEPTH]
@@ -389,5 +397,6 @@ def _may_close(world, winds, buffers):
     if buffers.high[AXIS_WAVE_HEIGHT] > limits[LIMIT_WAVE_HEIGHT]:
         return True
     wind = limits[LIMIT_WIND_SPEED]
-    strongest = direction_range(buffers.wind_over_ground, winds)[3] + world.margins[WIND_EAST]
+    margin = margin_of_cell(world, cell[0], cell[1], WIND_EAST)
+    strongest = direction_range(buffers.wind_over_ground, winds)[3] + margin
     return winds > 0 and wind < strongest

@@ -75,9 +75,10 @@ class BarrierWorld(NamedTuple):
     by_steps : bool
         Whether limits may open and close at any moment between two times of the raster, as where it
         samples functions, and not only as its linear interpolation says.
-    margins : float64[CHANNELS]
-        By how much the sea may differ from the interpolated raster, by channel; of vectors the
-        length of the difference, for both components.
+    margins : float64[Y, X, CHANNELS]
+        By how much the sea may differ from the interpolated raster in each of its cells, by
+        channel; of vectors the length of the difference, for both components. One cell: the same
+        everywhere.
     """
 
     raster: RasterArrays
@@ -134,6 +135,15 @@ class CellBuffers(NamedTuple):
     speed: np.ndarray
     asked: np.ndarray
     answer: np.ndarray
+
+
+@kernel_only
+def margin_of_cell(world, j, i, channel):
+    """Return by how much the sea may differ from the raster in a cell of the mesh."""
+    margins, m = world.margins, world.refinement
+    row = min(world.first_row + j // m, margins.shape[0] - 1)
+    column = min(world.first_column + i // m, margins.shape[1] - 1)
+    return margins[row, column, channel]
 
 
 @jit
@@ -240,13 +250,14 @@ def _read_window(world, j, i, first, last, buffers):
         t = min(end, times[min(step + 1 + (fraction >= 1.0), final)])
     if known_corners < 2 or (unlimited and instants == 0):
         return 0, False, 0.0, 0, 0
-    margins = world.margins
     for axis, channel in _PLAIN_AXES:
-        low[axis] -= margins[channel]
-        high[axis] += margins[channel]
-    lowest_wave -= margins[WAVE_HEIGHT_CHANNEL]
-    bed_low, bed_high = bed_low - margins[BED_DEPTH], bed_high + margins[BED_DEPTH]
-    level_low, level_high = level_low - margins[WATER_LEVEL], level_high + margins[WATER_LEVEL]
+        margin = margin_of_cell(world, j, i, channel)
+        low[axis] -= margin
+        high[axis] += margin
+    lowest_wave -= margin_of_cell(world, j, i, WAVE_HEIGHT_CHANNEL)
+    bed, level = margin_of_cell(world, j, i, BED_DEPTH), margin_of_cell(world, j, i, WATER_LEVEL)
+    bed_low, bed_high = bed_low - bed, bed_high + bed
+    level_low, level_high = level_low - level, level_high + level
     # depth
     deep = world.deepest[j, i]
     if index[BED_DEPTH] >= 0:
@@ -267,7 +278,8 @@ def _read_window(world, j, i, first, last, buffers):
     if lowest_wave < math.inf:
         is_open = is_open and lowest_wave <= world.ship.limits[LIMIT_WAVE_HEIGHT]
     if winds > 0 and world.ship.limits[LIMIT_WIND_SPEED] < math.inf:
-        shortest = direction_range(buffers.wind_over_ground, winds)[2] - margins[WIND_EAST]
+        shortest = direction_range(buffers.wind_over_ground, winds)[2]
+        shortest -= margin_of_cell(world, j, i, WIND_EAST)
         is_open = is_open and shortest <= world.ship.limits[LIMIT_WIND_SPEED]
     return instants, is_open, field_high, winds, waves
 
@@ -328,7 +340,7 @@ def read_cell(world, j, i, first, last, buffers):
 
 
 @kernel_only
-def fill_ranges(world, winds, waves, buffers):
+def fill_ranges(world, cell, winds, waves, buffers):
     """Complete the ranges of the conditions of a cell; return those of the directions.
 
     Returns
@@ -337,10 +349,11 @@ def fill_ranges(world, winds, waves, buffers):
         First and last azimuth of the wind, and of the waves, the way they travel [rad].
     """
     low, high = buffers.low, buffers.high
-    margins = world.margins
     wind, wave = direction_range(buffers.wind, winds), direction_range(buffers.waves, waves)
-    wind = widened_directions(wind, margins[WIND_EAST] + margins[CURRENT_EAST])
-    wave = widened_directions(wave, margins[WAVE_EAST])
+    j, i = cell
+    over_water = margin_of_cell(world, j, i, WIND_EAST) + margin_of_cell(world, j, i, CURRENT_EAST)
+    wind = widened_directions(wind, over_water)
+    wave = widened_directions(wave, margin_of_cell(world, j, i, WAVE_EAST))
     low[AXIS_WIND_SPEED], high[AXIS_WIND_SPEED] = wind[2], wind[3]
     for axis in range(low.shape[0]):
         if not low[axis] <= high[axis]:  # nothing known: anything
@@ -363,8 +376,9 @@ def fill_angles(directions, heading, half, buffers):
 
 
 @kernel_only
-def cell_speeds(world, instants, field_high, winds, waves, buffers):
+def cell_speeds(world, cell, found, buffers):
     """Fill the greatest speed by sector of heading; return (greatest, same for all headings)."""
+    instants, field_high, winds, waves = found
     index = world.raster.channel_index
     table, setting, _, needs = world.ship
     if index[SPEED_FIELD] >= 0:
@@ -374,7 +388,7 @@ def cell_speeds(world, instants, field_high, winds, waves, buffers):
     if instants < 0:
         buffers.speed[:] = world.top_speed
         return world.top_speed, True
-    directions = fill_ranges(world, winds, waves, buffers)
+    directions = fill_ranges(world, cell, winds, waves, buffers)
     if not needs & ANGLES:
         top = kept_speed(table, setting, world.top_speed, 0, buffers)
         buffers.speed[:] = top

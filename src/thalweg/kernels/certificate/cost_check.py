@@ -13,7 +13,7 @@ from thalweg.kernels.certificate.barrier_check import (
     replace_unknown_currents,
     triangle_differences,
 )
-from thalweg.kernels.certificate.cell_conditions import make_buffers, read_cell
+from thalweg.kernels.certificate.cell_conditions import make_buffers, margin_of_cell, read_cell
 from thalweg.kernels.codes import CURRENT_EAST
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit
@@ -125,7 +125,7 @@ def check_cost_barrier(world, motions, rates, phi, candidate, windows, excess):
             if instants <= 0 or not motions.is_open[j, i]:
                 excess[j, i] = math.inf
                 continue
-            drift = world.margins[CURRENT_EAST]
+            drift = margin_of_cell(world, j, i, CURRENT_EAST)
             strongest = replace_unknown_currents(buffers.current, instants) + drift
             speed, consumption = motions.speed[j, i], motions.consumption[j, i]
             least, top = _least_and_greatest(speed, consumption)

@@ -11,6 +11,7 @@ from thalweg.kernels.certificate.cell_conditions import (
     fill_angles,
     fill_ranges,
     make_buffers,
+    margin_of_cell,
     read_cell,
 )
 from thalweg.kernels.certificate.speed_ranges import (
@@ -116,7 +117,7 @@ def _fill_courses(world, cell, instants, buffers, motions):
         size = math.hypot(east, north)
         east, north = east / size, north / size
         along, to_port = _best_current(buffers.current, instants, east, north)
-        along += world.margins[CURRENT_EAST]
+        along += margin_of_cell(world, j, i, CURRENT_EAST)
         turn = math.atan2(east, north) / (2.0 * math.pi) * sectors
         for s in range(settings):
             sector = math.floor(turn + 0.5) % sectors
@@ -162,7 +163,7 @@ def fill_motions(world, priced, windows, wanted, motions):
             motions.is_open[j, i] = True
             motions.seconds[j, i] = UNREACHED
             if instants > 0:
-                directions = fill_ranges(world, winds, waves, buffers)
+                directions = fill_ranges(world, (j, i), winds, waves, buffers)
                 _fill_sectors(world, priced, (j, i), directions, buffers, motions, kept)
                 replace_unknown_currents(buffers.current, instants)
                 _fill_courses(world, (j, i), instants, buffers, motions)

@@ -33,6 +33,7 @@ from thalweg.search.certificate.time_certificate import (
     certify_time,
 )
 from thalweg.ship import PerformanceTable, TableError, TablePart
+from thalweg.ship.models.function_model import FunctionModel
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -101,7 +102,7 @@ def certified_bound(
     if not by_length:
         stretch = replace(stretch, depart=departures[0], latest=departures[1])
     found = certify_departures(stretch, seconds=seconds)
-    margin = 1.0 if by_length or not context.table.axes else 1.0 - TABLE_MARGIN
+    margin = 1.0 if by_length else 1.0 - _table_margin(context)
     if found.reached * margin > stretch.known * (1.0 + _CONTRADICTION) + route.tolerance_s:
         return no_bound(_contradicted(found, stretch.known, by_length=by_length))
     return LowerBound(min(found.value * margin, stretch.known), _kind(context, route, found))
@@ -334,7 +335,15 @@ def _kind(context: PlanningContext, route: Route, found: TimeCertificate) -> str
     text += _latitudes(context, route)
     if context.chart.zones.has_penalty:
         text += ", without the penalties of zones, shoals and traffic lanes"
+    if context.table.axes and isinstance(context.ship.model, FunctionModel):
+        text += f", for a table of the ship's function, {context.table.error.max:.1%} off at most"
     return text + (f", in {found.sampling}" if found.sampling else "")
+
+
+def _table_margin(context: PlanningContext) -> float:
+    """Return the share by which a bound is lowered for the error of the ship's table."""
+    found = context.table.error.max if isinstance(context.ship.model, FunctionModel) else 0.0
+    return min(max(TABLE_MARGIN, found), 1.0) if context.table.axes else 0.0
 
 
 def _latitudes(context: PlanningContext, route: Route) -> str:

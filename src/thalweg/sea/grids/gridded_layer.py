@@ -96,8 +96,12 @@ class GridLayer:
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times; NaN where unknown."""
-        located, moments = self._locate(lat, lon), self.axis.locate(times)
-        shape = (lat.size, times.size)
+        return self.series_at(names, times, self._locate(lat, lon))
+
+    def series_at(self, names: Sequence[str], times: FloatArray, located: GridLocation) -> Samples:
+        """Return values (S, T) at places in the grid for all times; NaN where unknown."""
+        moments = self.axis.locate(times)
+        shape = (len(located.corner), times.size)
         inside, when = located.corner[:, 0] >= 0, moments.level >= 0
         if not (inside.any() and when.any()):
             return {name: np.full(shape, np.nan) for name in names}
@@ -106,7 +110,7 @@ class GridLayer:
         if parts:
             samples = {name: np.full(shape, np.nan) for name in names}
             for part in parts:
-                for name, values in self.series(names, times[part], lat, lon).items():
+                for name, values in self.series_at(names, times[part], located).items():
                     samples[name][:, part] = values
             return samples
         samples = {}

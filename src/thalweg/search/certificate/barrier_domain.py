@@ -111,7 +111,7 @@ class BarrierDomain:
     sampling : How the sea of the raster differs from the data; "" where it does not.
     fastest : Upper bound of the speed over ground [m/s].
     ship : With an upper bound of the speed through water, also where that is a field.
-    margins : By how much the sea may differ from the raster, by channel.
+    margins : By how much the sea may differ from the raster (`BarrierRaster`).
     """
 
     raster: RasterArrays

@@ -157,7 +157,8 @@ def build_mesh(
     departures : From the first to the last departure [s].
     by_steps : Whether the raster samples functions, whose limits may open between its times.
     kept_out : Polygons that count as no-go zones (`closed_cells`).
-    margins : By how much the sea may differ from the raster, by channel; by default not at all.
+    margins : By how much the sea may differ from the raster, by cell and channel
+        (`BarrierRaster`); by default not at all.
     """
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner
@@ -177,7 +178,7 @@ def build_mesh(
         ship.top_speed,
         departures,
         by_steps,
-        np.zeros(CHANNEL_COUNT) if margins is None else margins,
+        np.zeros((1, 1, CHANNEL_COUNT)) if margins is None else margins,
     )
     return BarrierMesh(lat, lon, world, _links(chart, lat, lon))
 
@@ -225,12 +226,13 @@ def strongest_current_near(mesh: BarrierMesh, rows: slice, columns: slice) -> fl
     east, north = raster.channel_index[CURRENT_EAST], raster.channel_index[CURRENT_NORTH]
     if east < 0 or north < 0:
         return 0.0
-    part = raster.values[
-        :, rows.start // m : rows.stop // m + 2, columns.start // m : columns.stop // m + 2
-    ]
+    near = [slice(part.start // m, part.stop // m + 2) for part in (rows, columns)]
+    part = raster.values[:, near[0], near[1]]
     speed = np.hypot(part[..., east], part[..., north])
     known = speed[np.isfinite(speed)]
-    return float(known.max(initial=0.0)) + float(mesh.world.margins[CURRENT_EAST])
+    margins = mesh.world.margins
+    margins = margins if margins.shape[0] == 1 else margins[near[0], near[1]]
+    return float(known.max(initial=0.0)) + float(margins[..., CURRENT_EAST].max())
 
 
 def slope_direction(mesh: BarrierMesh, phi: FloatArray, lat: float, lon: float) -> float | None:

@@ -26,6 +26,7 @@ from thalweg.sea.standard_names import (
     NORTHWARD_WIND,
     WAVE_HEIGHT,
 )
+from thalweg.search.certificate.data_deviation import margins_of_data
 
 if TYPE_CHECKING:
     from thalweg.sea import Sea
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 _MOST_VALUES = 60_000_000
 _MOST_CELLS = 400_000
 _LINE_TOLERANCE = 1e-4  # of the spacing
+_LONGEST_CELL = 3.0  # sides of a cell [deg]: columns or rows are divided if one is longer
+_MUCH_FINER = 0.5  # of a spacing
 #: Variables that change the speed of a ship over ground.
 _MOVING = (EASTWARD_CURRENT, NORTHWARD_CURRENT, EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT)
 
@@ -45,9 +48,11 @@ class BarrierRaster:
     Attributes
     ----------
     arrays : Times since departure [s].
-    sampling : "" where the raster has the values and the interpolation of the data; otherwise a
-        note on how it differs.
-    margins : By how much the sea may differ from the raster, by channel (`margins_of_samples`).
+    sampling : "" where the raster and its margins hold for the data as they are interpolated;
+        otherwise a note on how it differs from them.
+    margins : float64[Y - 1, X - 1, CHANNELS]
+        By how much the sea may differ from the raster in each cell, by channel
+        (`margins_of_samples`, `margins_of_data`); (1, 1, CHANNELS) where that is the same in all.
     """
 
     arrays: RasterArrays
@@ -81,25 +86,29 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
     width, height = east - west, north - south
     instants = max(len(request.sea.times(*request.period)), 2)
     numbers = max(len(request.channels), 1) * instants
+    most_cells = min(_MOST_VALUES / numbers, _MOST_CELLS)
     wanted = max(width, height) / request.cells
-    least = math.sqrt(width * height / min(_MOST_VALUES / numbers, _MOST_CELLS))
-    lines, notes = _data_lines(request.sea), []
+    layers = [layer for layer in request.sea.layers if not _is_uniform(layer)]
+    lines, notes = _data_lines(layers), []
     if lines is None:
-        spacing = max(wanted, least)
-        if any(not _is_uniform(layer) for layer in request.sea.layers):
-            notes.append(f"the sea sampled every {spacing:.3g} degrees")
+        finest = min(
+            (one for layer in layers if (one := _grid_spacing(layer)) > 0.0), default=wanted
+        )
+        side = max(min(wanted, finest), math.sqrt(width * height / most_cells))
+        spacing = side, side
+        if layers:
+            notes.append(f"the sea sampled every {side:.3g} degrees")
     else:
-        first_lat, first_lon, spacing = lines
-        skipped = math.ceil(least / spacing - 1e-9)
-        if skipped > 1:
-            notes.append(f"every {skipped} lines of the data")
-            spacing *= skipped
-        if not _all_on_lines(request.sea, first_lat, first_lon, spacing):
-            notes.append(f"the sea sampled every {spacing:.3g} degrees")
-        south = first_lat + spacing * math.floor((south - first_lat) / spacing)
-        west = first_lon + spacing * math.floor((west - first_lon) / spacing)
-        north = south + spacing * math.ceil((north - south) / spacing - 1e-9)
-        east = west + spacing * math.ceil((east - west) / spacing - 1e-9)
+        spacing = _spacing_of_raster(lines, (height, width), most_cells)
+        skipped = [round(wide / own) for wide, own in zip(spacing, lines[2:])]
+        if max(skipped) > 1:
+            notes.append(f"every {max(skipped)} lines of the data")
+        if not _all_on_lines(layers, lines[:2], spacing):
+            notes.append(f"the sea sampled every {max(spacing):.3g} degrees")
+        south = lines[0] + spacing[0] * math.floor((south - lines[0]) / spacing[0])
+        west = lines[1] + spacing[1] * math.floor((west - lines[1]) / spacing[1])
+        north = south + spacing[0] * math.ceil((north - south) / spacing[0] - 1e-9)
+        east = west + spacing[1] * math.ceil((east - west) / spacing[1] - 1e-9)
     extra = None if request.speed_field is None else {SPEED_FIELD: request.speed_field}
     if extra is not None:
         notes.append("with the speed of the ship linear between these places")
@@ -107,18 +116,44 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
         south, min(north, 89.9), west, east, *request.period, request.channels,
         spacing_deg=spacing, extra=extra,
     )  # fmt: skip
-    if any(_changes_between_samples(layer) for layer in request.sea.layers):
+    if any(_changes_between_samples(layer) for layer in layers):
         step = np.diff(fields.times).max() if fields.times.size > 1 else 0.0
         if lines is None and step > 0.0:
             notes.append(f"and every {step / 60.0:.0f} minutes")
     if _layers_overlap(request):
         notes.append("a sea of overlapping files joined at the points of the finest")
     margins = _margins(request, fields)
-    if margins is None:
-        margins = np.zeros(CHANNEL_COUNT)
-    elif notes:
+    if margins is None and notes and request.speed_field is None:
+        margins = margins_of_data(layers, fields)
+        notes = notes if margins is None else []
+    elif margins is not None and notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")
+    if margins is None:
+        margins = np.zeros((1, 1, CHANNEL_COUNT))
     return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes), margins)
+
+
+def _spacing_of_raster(
+    lines: tuple[float, float, float, float], size: tuple[float, float], most_cells: float
+) -> tuple[float, float]:
+    """Return the spacing [deg] of rows and columns: multiples or parts of that of the data.
+
+    Parameters
+    ----------
+    lines : First latitude and longitude, and the spacings of the data [deg].
+    size : Height and width of the box [deg].
+    """
+    own = np.array(lines[2:])
+    longest, shortest = int(np.argmax(own)), int(np.argmin(own))
+    parts = np.ones(2)
+    parts[longest] = max(1.0, round(own[longest] / own[shortest] / _LONGEST_CELL))
+    if float(np.prod(np.array(size) / own * parts)) > most_cells:
+        parts[:] = 1.0
+    steps = np.ones(2)
+    while float(np.prod(np.array(size) / (own * steps))) * float(np.prod(parts)) > most_cells:
+        finer = int(np.argmin(own * steps))
+        steps[finer] = max(steps[finer] + 1.0, math.floor(1.02 * steps[finer]))
+    return float(own[0] * steps[0] / parts[0]), float(own[1] * steps[1] / parts[1])
 
 
 def greatest_value(raster: RasterArrays, channel: int) -> float:
@@ -132,7 +167,11 @@ def strongest_current_of_raster(raster: RasterArrays, margins: FloatArray) -> fl
     if east < 0 or north < 0:
         return 0.0
     size = np.hypot(raster.values[..., east], raster.values[..., north])
-    return _greatest(size) + float(margins[CURRENT_EAST])
+    if margins.shape[0] == 1:
+        return _greatest(size) + float(margins[0, 0, CURRENT_EAST])
+    most = np.nan_to_num(np.fmax.reduce(size, axis=0))  # unknown: no ship is there
+    corners = [most[:-1, :-1], most[:-1, 1:], most[1:, :-1], most[1:, 1:]]
+    return _greatest(np.maximum.reduce(corners) + margins[..., CURRENT_EAST])
 
 
 def _greatest(values: FloatArray) -> float:
@@ -161,7 +200,8 @@ def _margins(request: RasterRequest, fields: GridFields) -> FloatArray | None:
     present = np.flatnonzero(fields.channel_index >= 0)
     channels = present[np.argsort(fields.channel_index[present])].tolist()
     spacing = greatest_spacing(lat, fields.dlat, fields.dlon, fields.times)
-    return margins_of_samples(request.sea.layers, channels, fields.values, spacing)
+    margins = margins_of_samples(request.sea.layers, channels, fields.values, spacing)
+    return None if margins is None else margins[None, None]
 
 
 def _arrays(fields: GridFields, origin: float) -> RasterArrays:
@@ -193,36 +233,48 @@ def is_calm(sea: Sea) -> bool:
     )
 
 
-def _data_lines(sea: Sea) -> tuple[float, float, float] | None:
-    """Return (latitude, longitude, spacing) [deg] of the lines of the finest regular grid."""
-    found: list[tuple[float, float, float]] = []
-    for layer in sea.layers:
+def _data_lines(layers: Sequence[Any]) -> tuple[float, float, float, float] | None:
+    """Return the first latitude and longitude, and the spacings, of the finest regular grid [deg].
+
+    None where a grid of another kind is much finer.
+    """
+    found: list[tuple[float, float, float, float]] = []
+    for layer in layers:
         if not isinstance(layer, GridLayer) or not isinstance(layer.grid, RectilinearGrid):
             continue
-        spacing = _even_spacing(layer.grid)
-        if spacing is not None:
-            found.append((float(layer.grid.lat.min()), float(layer.grid.lon[0]), spacing))
-    return min(found, key=lambda row: row[2]) if found else None
-
-
-def _even_spacing(grid: RectilinearGrid) -> float | None:
-    """Return the spacing [deg] of a grid with even and equal steps both ways, else None."""
-    if grid.lat.size < 2 or grid.lon.size < 2:
+        steps = _even_spacing(layer.grid.lat), _even_spacing(layer.grid.lon)
+        if steps[0] is not None and steps[1] is not None:
+            found.append((float(layer.grid.lat.min()), float(layer.grid.lon[0]), *steps))  # type: ignore[arg-type]
+    if not found:
         return None
-    steps: FloatArray = np.concatenate([np.abs(np.diff(grid.lat)), np.diff(grid.lon)])
+    lines = min(found, key=lambda row: row[2] * row[3])
+    finest = min(_grid_spacing(layer) or math.inf for layer in layers)
+    return lines if finest > _MUCH_FINER * min(lines[2:]) else None
+
+
+def _grid_spacing(layer: Any) -> float:
+    """Return the typical spacing of the grid of a layer [deg]; 0 for other layers."""
+    return float(layer.grid.spacing) if isinstance(layer, GridLayer) else 0.0
+
+
+def _even_spacing(axis: FloatArray) -> float | None:
+    """Return the spacing [deg] of an axis with even steps, else None."""
+    if axis.size < 2:
+        return None
+    steps: FloatArray = np.abs(np.diff(axis))
     middle = float(np.median(steps))
     return middle if np.abs(steps - middle).max() < 1e-3 * middle else None
 
 
-def _all_on_lines(sea: Sea, lat: float, lon: float, spacing: float) -> bool:
+def _all_on_lines(
+    layers: Sequence[Any], first: tuple[float, float], spacing: tuple[float, float]
+) -> bool:
     """Return whether the lines of every layer are among lines of one grid."""
-    for layer in sea.layers:
-        if _is_uniform(layer):
-            continue
+    for layer in layers:
         if not isinstance(layer, GridLayer) or not isinstance(layer.grid, RectilinearGrid):
             return False
-        for axis, start in ((layer.grid.lat, lat), (layer.grid.lon, lon)):
-            place = (axis - start) / spacing
+        for axis, start, step in zip((layer.grid.lat, layer.grid.lon), first, spacing):
+            place = (axis - start) / step
             if np.abs(place - np.round(place)).max() > max(_LINE_TOLERANCE, 1e-3):
                 return False
     return True

@@ -122,7 +122,7 @@ def certify_costs(
         return best
     free = ROUNDING_FACTOR * per_metre * cost.stretch.length
     best = replace(best, values=np.minimum(free, known), sampling=domain.sampling)
-    raster = _cropped(domain.raster, cost.stretch, float((known / per_metre).max()))
+    raster, margins = _cropped(domain, cost.stretch, float((known / per_metre).max()))
     refinement = max(1, math.ceil(_FIRST_CELLS * domain.cell_height / cost.stretch.length))
     weather = (axes_needed(cost.stretch.ship.table) | axes_needed(cost.ship.consumption)) != 0
     cells = (raster.values.shape[1] - 1) * (raster.values.shape[2] - 1)
@@ -135,7 +135,7 @@ def certify_costs(
         mesh = build_mesh(
             raster, refinement, domain.ship, cost.stretch.chart,
             departures=cost.stretch.departures, by_steps=bool(domain.sampling),
-            kept_out=cost.stretch.kept_out, margins=domain.margins,
+            kept_out=cost.stretch.kept_out, margins=margins,
         )  # fmt: skip
         level = _CostLevel.on(mesh, cost, domain.fastest, float((known / per_metre).max()))
         found = [level.bound(*row) for row in zip(seconds_each, known, per_metre)]
@@ -154,8 +154,11 @@ def _bytes_of_motions(cost: CostToBound, cells: int) -> int:
     return 8 * cells * len(cost.ship.settings) * (_sectors(cost) + COURSES)
 
 
-def _cropped(raster: RasterArrays, stretch: StretchToBound, reach: float) -> RasterArrays:
-    """Return the part of a raster that routes of a greatest length [m] may touch, and a little."""
+def _cropped(
+    domain: BarrierDomain, stretch: StretchToBound, reach: float
+) -> tuple[RasterArrays, FloatArray]:
+    """Return the raster and margins of what routes of a greatest length [m] may touch, and more."""
+    raster, margins = domain.raster, domain.margins
     _, rows, columns, _ = raster.values.shape
     lat0, dlat, lon0, dlon = raster.corner
     lat, lon = lat0 + dlat * np.arange(rows), lon0 + dlon * np.arange(columns)
@@ -168,9 +171,10 @@ def _cropped(raster: RasterArrays, stretch: StretchToBound, reach: float) -> Ras
         parts.append(slice(max(int(used[0]) - 1, 0), int(used[-1]) + 2))
     j, i = parts
     corner = np.array([lat0 + dlat * j.start, dlat, lon0 + dlon * i.start, dlon])
-    return raster._replace(
-        values=np.ascontiguousarray(raster.values[:, j, i]), corner=corner.astype(float)
-    )
+    if margins.shape[0] > 1:
+        margins = margins[j.start : j.stop - 1, i.start : i.stop - 1]
+    values = np.ascontiguousarray(raster.values[:, j, i])
+    return raster._replace(values=values, corner=corner.astype(float)), margins
 
 
 @dataclass(frozen=True, eq=False)

@@ -142,7 +142,7 @@ def strongest_fair_currents(
     order = np.flatnonzero(in_reach)
     order = order[np.argsort(to_goal.ravel()[order])]
     rasters = _by_layer(stretch, domain)
-    drift = float(domain.margins[CURRENT_EAST]) * height.steepest
+    drift = domain.margins[..., CURRENT_EAST] * height.steepest
 
     def fair_at(time: float) -> FloatArray:
         strongest = np.fmax.reduce([_fair_at(raster, time, height) for raster in rasters])
@@ -193,7 +193,7 @@ def _by_layer(stretch: StretchToBound, domain: BarrierDomain) -> list[RasterArra
     """
     name = CHANNEL_VARIABLES[CURRENT_EAST]
     layers = [layer for layer in stretch.sea.layers if name in layer.variables]
-    if len(layers) < 2:
+    if len(layers) < 2 or domain.margins.any():  # those are for the layers together
         return [domain.raster]
     lat, lon = np.meshgrid(*domain.axes, indexing="ij")
     rasters = []

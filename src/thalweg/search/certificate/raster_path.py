@@ -37,7 +37,7 @@ def fast_path_on_raster(
     domain = BarrierDomain.around(stretch, cells)
     if domain is None or domain.fastest <= domain.ship.top_speed:
         return None
-    mesh = build_mesh(domain.raster, 1, domain.ship, stretch.chart)
+    mesh = build_mesh(domain.raster, 1, domain.ship, stretch.chart, margins=domain.margins)
     own = mesh.least_times(*stretch.start, domain.fastest)
     other = mesh.least_times(*stretch.goal, domain.fastest)
     task = BarrierTask(mesh, stretch.start, stretch.goal, stretch.known, own, other, True)

@@ -1,0 +1,357 @@
+"""By how much data differ from a raster on which the lines of their grids are not.
+
+A grid of axes is bilinear between its lines, and so is the raster between its own: in a cell of the
+raster the difference is greatest where lines of both, or of one with those of the other, cross. In
+a triangle of a mesh a value is a mean of those at its three corners. All is linear between times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from thalweg.core.types import BoolArray, Float32Array, FloatArray, IntArray
+from thalweg.kernels.codes import CHANNEL_COUNT
+from thalweg.sea.frozen_fields import GridFields
+from thalweg.sea.grids.grid_protocol import GridLocation
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
+from thalweg.sea.grids.triangle_grid import TriangleGrid
+from thalweg.sea.layer import Layer
+from thalweg.sea.standard_names import CHANNEL_VARIABLES, VECTORS
+
+_MOST_VALUES: Final = 150_000_000  # of all layers, places and times that are compared
+_VALUES_AT_A_TIME: Final = 4_000_000
+_ON_LINE: Final = 1e-3  # of the spacing of the raster
+_POLAR: Final = 85.0  # [deg]: beyond it triangles are not plane in latitude and longitude
+
+
+def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> FloatArray | None:
+    """Return by how much data may differ from a raster, in each of its cells.
+
+    Nodes that the raster does not know are filled in cells in which the data are known somewhere.
+
+    Parameters
+    ----------
+    layers : That are not the same everywhere, in order of priority.
+    fields : The raster, (T, Y, X, K).
+
+    Returns
+    -------
+    float64 array (Y - 1, X - 1, CHANNELS), or None
+        Of vectors the length of the difference, for both components. None where a layer is no grid
+        in files, or there are too many places and times to compare.
+    """
+    groups = _groups(fields)
+    work = 0
+    parts: list[tuple[tuple[int, ...], list[_AxesOnRaster | _TrianglesOnRaster]]] = []
+    for group in groups:
+        names = [CHANNEL_VARIABLES[channel] for channel in group]
+        having = [layer for layer in layers if not set(names).isdisjoint(layer.variables)]
+        here = [one for layer in having if (one := _placed(layer, fields)) is not None]
+        if len(here) < len(having):
+            return None
+        if len(here) == 1 and here[0].is_on_lines:
+            continue
+        parts.append((group, here))
+        work += sum(one.size for one in here) * fields.times.size * len(group)
+    if work > _MOST_VALUES:
+        return None
+    _, rows, columns, _ = fields.values.shape
+    margins = np.zeros((rows - 1, columns - 1, CHANNEL_COUNT))
+    for group, here in parts:
+        margins[..., list(group)] = _of_group(group, here, fields)[..., None]
+    return margins
+
+
+def _groups(fields: GridFields) -> list[tuple[int, ...]]:
+    """Return the channels of a raster, the components of a vector together."""
+    present = [channel for channel in CHANNEL_VARIABLES if fields.channel_index[channel] >= 0]
+    pairs = [vector.pair for vector in VECTORS]
+    groups: list[tuple[int, ...]] = []
+    for channel in present:
+        name = CHANNEL_VARIABLES[channel]
+        pair = next((pair for pair in pairs if name in pair), (name,))
+        group = tuple(one for one in present if CHANNEL_VARIABLES[one] in pair)
+        if group not in groups:
+            groups.append(group)
+    return groups
+
+
+@dataclass(frozen=True, eq=False)
+class _AxesOnRaster:
+    """A layer on a grid of axes beside a raster.
+
+    Attributes
+    ----------
+    lines : Rows and columns of both, in steps of the raster.
+    located : Their crossings in the grid of the layer, row by row.
+    whole : Cells of the raster all over in the box of the layer, (Y - 1, X - 1).
+    """
+
+    layer: GridLayer
+    lines: tuple[FloatArray, FloatArray]
+    located: GridLocation
+    whole: BoolArray
+
+    @classmethod
+    def of(cls, layer: GridLayer, grid: RectilinearGrid, fields: GridFields) -> _AxesOnRaster:
+        _, rows, columns, _ = fields.values.shape
+        turned = np.asarray(grid.lon, float)[:, None] + 360.0 * np.arange(-2.0, 3.0)
+        lat_lines = (np.asarray(grid.lat, float) - fields.lat0) / fields.dlat
+        lon_lines = (turned.ravel() - fields.lon0) / fields.dlon
+        row, column = _with_raster(lat_lines, rows), _with_raster(lon_lines, columns)
+        lat, lon = np.meshgrid(
+            fields.lat0 + fields.dlat * row, fields.lon0 + fields.dlon * column, indexing="ij"
+        )
+        found = grid.locate(lat.ravel(), lon.ravel())
+        weight = np.where(found.weight < 2.0 * _ON_LINE, 0.0, found.weight)
+        area = layer.area
+        lat_nodes = fields.lat0 + fields.dlat * np.arange(rows)
+        lon_nodes = fields.lon0 + fields.dlon * np.arange(columns)
+        inside_lat = (lat_nodes >= area.south - 1e-9) & (lat_nodes <= area.north + 1e-9)
+        inside_lon = grid.wraps | ((lon_nodes - area.west) % 360.0 <= area.width + 1e-9)
+        whole = np.outer(inside_lat[1:] & inside_lat[:-1], inside_lon[1:] & inside_lon[:-1])
+        return cls(layer, (row, column), GridLocation(found.corner, weight), whole)
+
+    @property
+    def size(self) -> int:
+        """Number of places that are compared."""
+        return len(self.located.corner)
+
+    @property
+    def is_on_lines(self) -> bool:
+        """Whether all lines of the layer are among those of the raster."""
+        return all(bool((line == np.round(line)).all()) for line in self.lines)
+
+    def compare(
+        self, names: Sequence[str], raster: Sequence[Float32Array], times: FloatArray
+    ) -> _Comparison:
+        """Compare the values of variables with the channels of the raster, (T, Y, X) each."""
+        found = self.layer.series_at(list(names), times, self.located)
+        shape = times.size, *(line.size for line in self.lines)
+        known, apart = np.ones(shape, bool), np.zeros(shape)
+        for name, channel in zip(names, raster):
+            own = np.asarray(found[name]).T.reshape(shape)
+            known &= np.isfinite(own)
+            apart = np.hypot(apart, own - _on_lines(channel, self.lines))
+        # where the raster is unknown in spite of known data nothing can be said
+        apart = np.where(known, np.where(np.isfinite(apart), apart, np.inf), 0.0)
+        parts = [_starts(line) for line in self.lines]
+        return _Comparison(
+            _in_cells(known, parts, np.logical_or), _in_cells(known, parts, np.logical_and),
+            _in_cells(apart, parts, np.maximum),
+        )  # fmt: skip
+
+
+class _Comparison(NamedTuple):
+    """What holds in the cells of a raster at some times, (T, Y - 1, X - 1).
+
+    Attributes
+    ----------
+    somewhere, everywhere : Whether the data are known somewhere, and everywhere.
+    apart : How far they are from the raster at most.
+    """
+
+    somewhere: BoolArray
+    everywhere: BoolArray
+    apart: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _TrianglesOnRaster:
+    """A layer on triangles beside a raster.
+
+    Attributes
+    ----------
+    used : Grid points at corners of triangles.
+    corners : Their places in ``used``, (M, 3).
+    order, starts, cells : Triangles by cell: the boxes of ``order[starts[k]:starts[k + 1]]`` meet
+        the cell with the flat number ``cells[k]``.
+    shape : Rows and columns of cells.
+    """
+
+    layer: GridLayer
+    used: IntArray
+    corners: IntArray
+    order: IntArray
+    starts: IntArray
+    cells: IntArray
+    shape: tuple[int, int]
+    is_on_lines = False
+
+    @classmethod
+    def of(
+        cls, layer: GridLayer, grid: TriangleGrid, fields: GridFields
+    ) -> _TrianglesOnRaster | None:
+        _, rows, columns, _ = fields.values.shape
+        lat, lon = np.asarray(grid.lat, float), np.asarray(grid.lon, float)
+        if np.nanmax(np.abs(lat)) > _POLAR:
+            return None
+        corners = np.asarray(grid.triangles)
+        corners = corners[np.isfinite(lat[corners]).all(axis=1)]
+        row = (lat[corners] - fields.lat0) / fields.dlat
+        first = (lon[corners[:, :1]] - fields.lon0 + 180.0) % 360.0 - 180.0
+        column = (
+            first + (lon[corners] - lon[corners[:, :1]] + 180.0) % 360.0 - 180.0
+        ) / fields.dlon
+        pairs: list[tuple[IntArray, IntArray]] = []
+        for turn in (-360.0, 0.0, 360.0):
+            ends = np.stack([row, column + turn / fields.dlon])
+            low = np.maximum(np.floor(ends.min(axis=2)).astype(int), 0)
+            high = np.floor(ends.max(axis=2)).astype(int)
+            high = np.minimum(high, [[rows - 2], [columns - 2]])
+            one = np.flatnonzero((low <= high).all(axis=0))
+            number, cell = _boxes(low[:, one], high[:, one], columns - 1)
+            pairs.append((one[number], cell))
+        triangle, cell = (np.concatenate(part) for part in zip(*pairs))
+        order = np.argsort(cell, kind="stable")
+        cells, starts = np.unique(cell[order], return_index=True)
+        used, places = np.unique(corners, return_inverse=True)
+        return cls(
+            layer, used, places.reshape(corners.shape), triangle[order], starts, cells,
+            (rows - 1, columns - 1),
+        )  # fmt: skip
+
+    @property
+    def size(self) -> int:
+        """Number of places that are compared."""
+        return max(self.used.size, self.order.size)
+
+    @property
+    def whole(self) -> BoolArray:
+        """A mesh may have holes: no cell is all over in it, as far as is known."""
+        return np.zeros(self.shape, bool)
+
+    def compare(
+        self, names: Sequence[str], raster: Sequence[Float32Array], times: FloatArray
+    ) -> _Comparison:
+        """Compare the values of variables with the channels of the raster, (T, Y, X) each."""
+        located = GridLocation(self.used[:, None], np.ones((self.used.size, 1)))
+        found = self.layer.series_at(list(names), times, located)
+        known: BoolArray = np.ones((times.size, self.order.size), bool)
+        apart = np.zeros((times.size, self.order.size))
+        cell = np.repeat(self.cells, np.diff(np.append(self.starts, self.order.size)))
+        j, i = np.divmod(cell, self.shape[1])
+        for name, channel in zip(names, raster):
+            corner = np.asarray(found[name]).T[:, self.corners]
+            known &= np.all(np.isfinite(corner), axis=2)[:, self.order]
+            low, high = corner.min(axis=2)[:, self.order], corner.max(axis=2)[:, self.order]
+            around = np.stack([channel[:, j + up, i + side] for up in (0, 1) for side in (0, 1)])
+            farthest = np.maximum(high - around.min(axis=0), around.max(axis=0) - low)
+            apart = np.hypot(apart, farthest)
+        apart = np.where(known, np.where(np.isfinite(apart), apart, np.inf), 0.0)
+        somewhere, most = (
+            np.zeros((times.size, self.shape[0] * self.shape[1]), kind) for kind in (bool, float)
+        )
+        if self.cells.size:
+            somewhere[:, self.cells] = np.maximum.reduceat(known, self.starts, axis=1)
+            most[:, self.cells] = np.maximum.reduceat(apart, self.starts, axis=1)
+        wide = times.size, *self.shape
+        return _Comparison(somewhere.reshape(wide), np.zeros(wide, bool), most.reshape(wide))
+
+
+def _with_raster(own: FloatArray, count: int) -> FloatArray:
+    """Return lines within a raster with those of the raster itself, in steps of it."""
+    near = np.round(own)
+    own = np.where(np.abs(own - near) < _ON_LINE, near, own)
+    return np.union1d(own[(own >= 0.0) & (own <= count - 1)], np.arange(float(count)))
+
+
+def _starts(line: FloatArray) -> IntArray:
+    """Return the places of the lines of the raster among all lines."""
+    return np.flatnonzero(line == np.round(line))
+
+
+def _in_cells(values: Any, parts: Sequence[IntArray], combine: np.ufunc) -> Any:
+    """Combine values on lines (T, rows, columns) in each cell of the raster with its edges."""
+    for axis, starts in zip((1, 2), parts):
+        inside = combine.reduceat(values, starts[:-1], axis=axis)
+        # a part of `reduceat` ends before the next begins, the last one at the end
+        values = combine(inside, values.take(starts[1:], axis=axis))
+    return values
+
+
+def _on_lines(values: Float32Array, lines: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Return values of a raster (T, Y, X) where lines cross, (T, rows, columns)."""
+    found: FloatArray = np.asarray(values, float)
+    for axis, line in zip((1, 2), lines):
+        place = np.minimum(line.astype(int), values.shape[axis] - 2)
+        share = (line - place).reshape((-1, 1) if axis == 1 else (-1,))
+        low, high = found.take(place, axis=axis), found.take(place + 1, axis=axis)
+        # a node of weight zero may be unknown
+        found = np.where(
+            share == 0.0, low, np.where(share == 1.0, high, low + share * (high - low))
+        )
+    return found
+
+
+def _boxes(low: IntArray, high: IntArray, columns: int) -> tuple[IntArray, IntArray]:
+    """Return the number of a box and the flat number of a cell for all cells of all boxes."""
+    size = high - low + 1
+    count = size[0] * size[1]
+    number = np.repeat(np.arange(count.size), count)
+    within = np.arange(number.size) - np.repeat(np.cumsum(count) - count, count)
+    j, i = np.divmod(within, size[1][number])
+    return number, (low[0][number] + j) * columns + low[1][number] + i
+
+
+def _placed(layer: Layer, fields: GridFields) -> _AxesOnRaster | _TrianglesOnRaster | None:
+    if isinstance(layer, GridLayer) and isinstance(layer.grid, RectilinearGrid):
+        return _AxesOnRaster.of(layer, layer.grid, fields)
+    if isinstance(layer, GridLayer) and isinstance(layer.grid, TriangleGrid):
+        return _TrianglesOnRaster.of(layer, layer.grid, fields)
+    return None
+
+
+def _of_group(
+    group: tuple[int, ...],
+    layers: Sequence[_AxesOnRaster | _TrianglesOnRaster],
+    fields: GridFields,
+) -> FloatArray:
+    """Return the greatest difference of the channels of a group in each cell, (Y - 1, X - 1)."""
+    names = [CHANNEL_VARIABLES[channel] for channel in group]
+    channels = [fields.values[..., fields.channel_index[channel]] for channel in group]  # views
+    unknown = np.isnan(np.sum(channels, axis=0))
+    for channel in channels:
+        _fill_unknown(channel, unknown)
+    count, rows, columns, _ = fields.values.shape
+    most, reached = (np.zeros((rows - 1, columns - 1), kind) for kind in (float, bool))
+    left = np.ones((count, rows - 1, columns - 1), bool)  # cells that no layer before covers
+    for one in layers:
+        covered = np.zeros(left.shape, bool)
+        step = max(1, _VALUES_AT_A_TIME // max(1, one.size))
+        for begin in range(0, count, step):
+            part = slice(begin, min(begin + step, count))
+            found = one.compare(names, [values[part] for values in channels], fields.times[part])
+            counts = left[part] & found.somewhere
+            np.maximum(most, np.where(counts, found.apart, 0.0).max(axis=0), out=most)
+            reached |= counts.any(axis=0)
+            covered[part] = np.logical_and(found.everywhere, one.whole)
+        if len(layers) > 1 and not np.any(one.layer.axis.gaps):
+            # another layer holds between a time that is known and one that is not
+            before, after = covered[:-1].copy(), covered[1:].copy()
+            covered[1:] &= before
+            covered[:-1] &= after
+            left &= ~covered
+    needed = np.zeros((rows, columns), bool)
+    for up in (0, 1):
+        for side in (0, 1):
+            needed[up : up + rows - 1, side : side + columns - 1] |= reached
+    for channel in channels:
+        channel[unknown & ~needed] = np.nan
+    return most
+
+
+def _fill_unknown(values: Float32Array, unknown: BoolArray) -> None:
+    """Fill a channel (T, Y, X) from the nearest known node, where one is known at that time."""
+    for step, gaps in enumerate(unknown):
+        if not gaps.any() or gaps.all():
+            continue
+        if step == 0 or not np.array_equal(gaps, unknown[step - 1]):
+            nearest = distance_transform_edt(gaps, return_distances=False, return_indices=True)
+        values[step] = values[step][tuple(nearest)]
