@@ -22,6 +22,7 @@ from thalweg.route import (
     write_geojson,
     write_gpx,
 )
+from thalweg.route.formats.csv_format import parse_csv
 from thalweg.route.formats.file_route import file_route
 from thalweg.sea import Sea
 
@@ -114,6 +115,14 @@ def test_names_of_waypoints_are_kept(tmp_path, ending):
         WRITERS[ending](found, path)
         text = path.read_text()
         assert "Piraeus" in text and "WP 2" in text and "Heraklion" in text and "WP 1" not in text
+
+
+def test_a_csv_that_is_cut_off_in_its_last_row_is_refused():
+    """A file that ended in a number was a voyage to that longitude, short of the bar."""
+    rows = ["name,lat,lon,ukc_m,fuel_t,course_deg,time", "A,51.0,3.0,9,0,90,", "B,51.1,3.4599"]
+    with pytest.raises(InputError, match=r"last row of the CSV has 3 of 7 columns"):
+        parse_csv("\n".join(rows))
+    assert len(parse_csv("\n".join([*rows[:2], "B,51.1,3.4599,8"])).positions) == 2
 
 
 def test_csv_waits_in_other_units_and_at_repeated_positions(tmp_path):

@@ -134,7 +134,7 @@ def passage_beside_a_jet_on_one_line() -> StretchToBound:
 
 @pytest.mark.parametrize("rows", [0.01, 0.013])
 def test_a_jet_in_the_finer_of_two_files_counts(rows):
-    """The finer file had rows closer than columns: its lines were not used, and its jet not seen."""
+    """The finer file had rows closer than columns: its lines were not used, its jet not seen."""
     lat, lon = 0.35 + rows * np.arange(-5, 6), np.arange(5, 36) * 0.05
     east = np.zeros((lat.size, lon.size))
     east[5] = 9.0

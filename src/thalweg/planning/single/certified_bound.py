@@ -287,18 +287,14 @@ class CurrentsInReach:
         return domain.strongest_current, domain.sampling
 
 
-def currents_in_reach(context: PlanningContext, route: Route) -> CurrentsInReach | None:
-    """Return the currents in the water that a ship can reach; None without currents.
-
-    Parameters
-    ----------
-    route : A route that takes as long as any that counts: water farther away than its time at the
-        greatest speed is left out.
-    """
+def currents_in_reach(
+    context: PlanningContext, route: Route, *, longest: float
+) -> CurrentsInReach | None:
+    """Return the currents that a ship can reach in the ``longest`` time [s]; None without any."""
     stretch = _stretch(context, route)
     if len(stretch.currents) < 2:
         return None
-    stretch = replace(stretch, channels=stretch.currents)
+    stretch = replace(stretch, channels=stretch.currents, known=max(longest, stretch.known))
     return CurrentsInReach(stretch, BarrierDomain.around(stretch, _CELLS_FOR_CURRENT))
 
 

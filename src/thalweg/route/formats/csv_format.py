@@ -69,6 +69,7 @@ def parse_csv(text: str) -> ParsedTrack:
     if separator != ",":  # then a comma is the decimal sign of many languages
         for row in rows[1:]:
             row[:] = [re.sub(_DECIMAL_COMMA, r"\1.\2\3", cell) for cell in row]
+    _check_last_row(rows)
     positions = [_position(row, lat, lon, i) for i, row in enumerate(rows[1:], start=1)]
     time = _column(header, "time")
     times = [None if time is None else _cell_of(row, time) for row in rows[1:]]
@@ -102,6 +103,16 @@ def _is_known(name: str, values: list[object]) -> bool:
     """Return whether a column has a value; an unknown sum has that of the start alone, zero."""
     known = [value for value in values if value != ""]
     return bool(known) and not (name.startswith(_SUMS) and known == [0.0])
+
+
+def _check_last_row(rows: list[list[str]]) -> None:
+    """Raise `InputError` where the last row has less than half of the columns of all others."""
+    if len(rows) > 2 and 2 * len(rows[-1]) < min(map(len, rows[:-1])):
+        raise InputError(
+            f"The last row of the CSV has {len(rows[-1])} of {len(rows[0])} columns.",
+            "All rows before it have more than twice as many: the file seems to be cut off.",
+            "Get the whole file, or complete the row.",
+        )
 
 
 def _bare(name: str) -> str:

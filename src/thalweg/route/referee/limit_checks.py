@@ -99,7 +99,7 @@ def land_violations(
     if keeps_off:
         checked = status == codes.OK
         checked[approach] = False
-        found = _offing_violations(chart, track, times, checked)
+        found = _offing_violations(chart, track, (times, ends_at), checked)
     if len(approach):
         closed = chart.crosses_no_go_zone(*ends[:, approach])
         status[approach] = np.where(closed, codes.NO_GO, codes.OK)
@@ -129,25 +129,25 @@ def _first_closed(chart: Any, ends: FloatArray) -> float:
 
 
 def _offing_violations(
-    chart: Chart, track: Track, times: FloatArray, checked: BoolArray
+    chart: Chart, track: Track, times: tuple[FloatArray, FloatArray], checked: BoolArray
 ) -> list[Violation]:
     """Return the legs nearer to land than the offing, of those that are checked."""
-    return [
-        Violation(
-            f"{REASONS[codes.OFFING]}: leg {track.leg_numbers[place.leg]}",
-            float(times[place.leg]),
-            place.lat,
-            place.lon,
-            place.distance,
-            limit,
-        )
-        for place, limit in offing_breaches(chart, track)
-        if checked[place.leg]
-    ]
+    found = []
+    for place, limit in offing_breaches(chart, track):
+        leg = place.leg
+        if not checked[leg]:
+            continue
+        begin, end = ((float(track.lat[k]), float(track.lon[k])) for k in (leg, leg + 1))
+        length = float(distance(*begin, *end))
+        share = float(distance(*begin, place.lat, place.lon)) / length if length > 0.0 else 0.0
+        time = float(times[0][leg] + min(share, 1.0) * (times[1][leg] - times[0][leg]))
+        reason = f"{REASONS[codes.OFFING]}: leg {track.leg_numbers[leg]}"
+        found.append(Violation(reason, time, place.lat, place.lon, place.distance, limit))
+    return found
 
 
 def lane_violations(
-    world: SailingEnvironment, pieces: TrackPieces, times: FloatArray
+    world: SailingEnvironment, pieces: TrackPieces, times: FloatArray, ends_at: FloatArray
 ) -> list[Violation]:
     """Return the legs that run against a traffic lane where that is forbidden, at their middle."""
     if world.chart is None or not world.chart.zones.lanes:
@@ -167,7 +167,8 @@ def lane_violations(
             reason = (
                 f"against the traffic lane {group.lanes[lane].name}: leg {track.leg_numbers[leg]}"
             )
-            found.append(Violation(reason, float(times[leg]), float(y), float(x)))
+            middle = 0.5 * float(times[leg] + ends_at[leg])
+            found.append(Violation(reason, middle, float(y), float(x)))
     return found
 
 

@@ -136,7 +136,7 @@ def _check_limits(
     found += wait_depth_violations(track, waits, min_ukc)
     found += waiting_violations(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
-    found += lane_violations(world, sailed.pieces, sailed.leg_times()[0])
+    found += lane_violations(world, sailed.pieces, *sailed.leg_times())
     found += land_violations(world, sailed.pieces, *sailed.leg_times())
     clearance = _finite(depth - world.ship.draught)
     least = _least_by_leg(near.leg, clearance, moments, len(track) - 1)

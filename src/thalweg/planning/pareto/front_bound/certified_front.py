@@ -50,6 +50,10 @@ _KIND = (
     "bound counts there, for routes of at most {until:.1f} h between the sea ends of approaches"
 )
 WITH_LEAST_TIME = "with the least time by a map of earliest arrivals"
+_LONGER, _HOURS_MORE = (
+    2.0,
+    24.0,
+)  # than the slowest route: later arrivals that lines of currents hold for
 _PARTS = 2  # of the time for the proof: one is for the least time in currents
 _CONTRADICTION = 2e-3  # by which a front may be above a route, for the errors of tables
 _ABOVE_A_ROUTE = "no bound: the line of the proof is above a route of the plan"
@@ -122,7 +126,7 @@ def _certified_fronts(
     context, routes = trade_off.context, [item.route for item in ordered]
     latest = min(context.latest_arrival, context.data_end)  # later routes meet unknown sea
     allowed = (latest - context.voyage.earliest_departure) / HOUR
-    reached = _currents_in_reach(trade_off, routes)
+    reached = _currents_in_reach(trade_off, routes, allowed)
     current, kind = strongest_current_of_plan(trade_off, explored, reached)
     ways = least_ways(trade_off, [*routes, *(one.fastest for one in explored)], current)
     longest = max((item.route.time_h for item in ordered if item.route.feasible), default=0.0)
@@ -163,13 +167,19 @@ def _certified_fronts(
 
 
 def _currents_in_reach(
-    trade_off: TradeOffContext, routes: Sequence[Route]
+    trade_off: TradeOffContext, routes: Sequence[Route], allowed: float
 ) -> CurrentsInReach | None:
-    """Return the currents that routes no slower than the slowest can meet; None if not searched."""
+    """Return the currents that routes no slower than the slowest can meet; None if not searched.
+
+    All routes that arrive within the ``allowed`` time [h], where that is little longer.
+    """
     feasible = [route for route in routes if route.feasible]
     if not feasible or trade_off.interrupt_guard.stopped():
         return None
-    return currents_in_reach(trade_off.context, max(feasible, key=lambda route: route.time_h))
+    slowest = max(feasible, key=lambda route: route.time_h)
+    most = min(_LONGER * slowest.time_h, slowest.time_h + _HOURS_MORE)
+    longest = allowed if slowest.time_h < allowed <= most else slowest.time_h
+    return currents_in_reach(trade_off.context, slowest, longest=longest * HOUR)
 
 
 def _certified_least_time(
