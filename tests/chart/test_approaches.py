@@ -135,8 +135,8 @@ GATES = [
     ("Brisbane", -27.05, 153.20, 2.0),  # Caloundra channel
     ("Auckland", -36.83, 174.82, 1.0),  # Rangitoto
     ("Wellington", -41.35, 174.83, 1.0),
-    ("Aqaba", 28.0, 34.46, 1.5),  # Strait of Tiran
-    ("Elat", 28.0, 34.46, 1.5),
+    ("Aqaba", 29.41, 34.91, 1.5),  # Gulf of Aqaba; the rest is sailed as sea
+    ("Elat", 29.41, 34.91, 1.5),
     ("Saint Petersburg", 59.923, 29.993, 0.5),
 ]
 
