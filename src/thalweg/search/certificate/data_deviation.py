@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
 
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, IntArray
 from thalweg.kernels.codes import CHANNEL_COUNT
@@ -349,6 +348,8 @@ def _of_group(
 
 def _fill_unknown(values: Float32Array, unknown: BoolArray) -> None:
     """Fill a channel (T, Y, X) from the nearest known node, where one is known at that time."""
+    from scipy.ndimage import distance_transform_edt
+
     for step, gaps in enumerate(unknown):
         if not gaps.any() or gaps.all():
             continue
