@@ -124,7 +124,7 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
         notes.append("a sea of overlapping files joined at the points of the finest")
     margins = _margins(request, fields)
     if margins is None and notes and request.speed_field is None:
-        margins = margins_of_data(layers, fields)
+        margins = margins_of_data(request.sea.layers, fields)
         notes = notes if margins is None else []
     elif margins is not None and notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")

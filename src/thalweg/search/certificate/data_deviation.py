@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 from thalweg.sea.grids.triangle_grid import TriangleGrid
 from thalweg.sea.layer import Layer
+from thalweg.sea.models.function_layer import FormulaLayer
 from thalweg.sea.standard_names import CHANNEL_VARIABLES, VECTORS
 
 _MOST_VALUES: Final = 150_000_000  # of all layers, places and times that are compared
@@ -36,7 +37,7 @@ def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> FloatArray |
 
     Parameters
     ----------
-    layers : That are not the same everywhere, in order of priority.
+    layers : Of the sea, in order of priority.
     fields : The raster, (T, Y, X, K).
 
     Returns
@@ -47,14 +48,16 @@ def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> FloatArray |
     """
     groups = _groups(fields)
     work = 0
-    parts: list[tuple[tuple[int, ...], list[_AxesOnRaster | _TrianglesOnRaster]]] = []
+    parts: list[tuple[tuple[int, ...], list[_OnRaster]]] = []
     for group in groups:
         names = [CHANNEL_VARIABLES[channel] for channel in group]
         having = [layer for layer in layers if not set(names).isdisjoint(layer.variables)]
         here = [one for layer in having if (one := _placed(layer, fields)) is not None]
         if len(here) < len(having):
             return None
-        if len(here) == 1 and here[0].is_on_lines:
+        grids = [one for one in here if not isinstance(one, _UniformOnRaster)]
+        # a value that fills the gaps of a grid on the lines is among the corners of its cell
+        if not grids or (len(grids) == 1 and grids[0].is_on_lines):
             continue
         parts.append((group, here))
         work += sum(one.size for one in here) * fields.times.size * len(group)
@@ -256,8 +259,10 @@ class _TrianglesOnRaster:
 
 def _with_raster(own: FloatArray, count: int) -> FloatArray:
     """Return lines within a raster with those of the raster itself, in steps of it."""
-    near = np.round(own)
-    own = np.where(np.abs(own - near) < _ON_LINE, near, own)
+    own = np.unique(own)
+    near, apart = np.round(own), np.diff(own)
+    tolerance = _ON_LINE * min(1.0, float(apart.min(initial=1.0)))
+    own = np.where(np.abs(own - near) < tolerance, near, own)
     return np.union1d(own[(own >= 0.0) & (own <= count - 1)], np.arange(float(count)))
 
 
@@ -299,7 +304,41 @@ def _boxes(low: IntArray, high: IntArray, columns: int) -> tuple[IntArray, IntAr
     return number, (low[0][number] + j) * columns + low[1][number] + i
 
 
-def _placed(layer: Layer, fields: GridFields) -> _AxesOnRaster | _TrianglesOnRaster | None:
+@dataclass(frozen=True, eq=False)
+class _UniformOnRaster:
+    """A layer that is the same everywhere, where no layer before it is known."""
+
+    layer: FormulaLayer
+    shape: tuple[int, int]
+    is_on_lines = True
+    size = 0
+
+    @property
+    def whole(self) -> BoolArray:
+        """All cells."""
+        return np.ones(self.shape, bool)
+
+    def compare(
+        self, names: Sequence[str], raster: Sequence[Float32Array], times: FloatArray
+    ) -> _Comparison:
+        """Compare the values of variables with the channels of the raster, (T, Y, X) each."""
+        everywhere = np.ones((times.size, *self.shape), bool)
+        own = self.layer.series(names, times[:1], np.zeros(1), np.zeros(1))
+        apart = np.zeros(raster[0].shape)
+        for name, channel in zip(names, raster):
+            apart = np.hypot(apart, float(own[name][0, 0]) - channel)
+        # at the corners of each cell
+        sides = slice(None, -1), slice(1, None)
+        most = np.maximum.reduce([apart[:, up, right] for up in sides for right in sides])
+        return _Comparison(everywhere, everywhere, np.where(np.isfinite(most), most, np.inf))
+
+
+_OnRaster: TypeAlias = _AxesOnRaster | _TrianglesOnRaster | _UniformOnRaster
+
+
+def _placed(layer: Layer, fields: GridFields) -> _OnRaster | None:
+    if isinstance(layer, FormulaLayer) and "values" in layer.facts:
+        return _UniformOnRaster(layer, (fields.values.shape[1] - 1, fields.values.shape[2] - 1))
     if isinstance(layer, GridLayer) and isinstance(layer.grid, RectilinearGrid):
         return _AxesOnRaster.of(layer, layer.grid, fields)
     if isinstance(layer, GridLayer) and isinstance(layer.grid, TriangleGrid):
@@ -309,7 +348,7 @@ def _placed(layer: Layer, fields: GridFields) -> _AxesOnRaster | _TrianglesOnRas
 
 def _of_group(
     group: tuple[int, ...],
-    layers: Sequence[_AxesOnRaster | _TrianglesOnRaster],
+    layers: Sequence[_OnRaster],
     fields: GridFields,
 ) -> FloatArray:
     """Return the greatest difference of the channels of a group in each cell, (Y - 1, X - 1)."""
@@ -331,7 +370,7 @@ def _of_group(
             np.maximum(most, np.where(counts, found.apart, 0.0).max(axis=0), out=most)
             reached |= counts.any(axis=0)
             covered[part] = np.logical_and(found.everywhere, one.whole)
-        if len(layers) > 1 and not np.any(one.layer.axis.gaps):
+        if isinstance(one, _AxesOnRaster) and not np.any(one.layer.axis.gaps):
             # another layer holds between a time that is known and one that is not
             before, after = covered[:-1].copy(), covered[1:].copy()
             covered[1:] &= before
