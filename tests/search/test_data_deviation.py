@@ -179,3 +179,24 @@ def test_lines_of_the_data_need_no_margin():
         RasterRequest(sea, [CURRENT_EAST, CURRENT_NORTH], box, period, 5)
     )
     assert raster.sampling == "" and not raster.margins.any()
+
+
+def test_the_last_row_of_a_file_of_32_bit_axes_is_in_the_raster():
+    """The raster ended 2e-5 degrees beyond the file: its last row was unknown, with a jet on it."""
+    lat = (50.0 + 0.04 * np.arange(29)).astype(np.float32)
+    lat[-1] -= np.float32(2.4e-5)
+    calm = np.zeros((lat.size, 31))
+    calm[-1] = 2.5
+    names = {"uo": calm, "vo": 0.0 * calm}
+    data = {
+        name: (("latitude", "longitude"), values, {"standard_name": CURRENTS[name]})
+        for name, values in names.items()
+    }
+    where = {"latitude": lat, "longitude": (2.0 + 0.04 * np.arange(31)).astype(np.float32)}
+    box, period = (50.3, 51.119, 2.2, 3.1), (DEPART, DEPART + 3.6e4)
+    request = RasterRequest(
+        Sea.open(xr.Dataset(data, where)), [CURRENT_EAST, CURRENT_NORTH], box, period, 5
+    )
+    raster = freeze_barrier_raster(request)
+    assert raster.sampling == ""
+    assert strongest_current_of_raster(raster.arrays, raster.margins) >= 2.49

@@ -12,10 +12,10 @@ from thalweg.kernels.certificate.cell_conditions import (
     SECTORS,
     cell_speeds,
     make_buffers,
-    margin_of_cell,
     read_cell,
 )
 from thalweg.kernels.certificate.known_limits import has_limits
+from thalweg.kernels.certificate.mesh_sampling import margin_of_cell
 from thalweg.kernels.certificate.speed_ranges import direction_range
 from thalweg.kernels.codes import (
     AXIS_DEPTH,
@@ -364,9 +364,8 @@ def closed_throughout(world, windows, closed, closing):
                 closed[j, i] = not is_open
                 if limited and is_open:
                     shallow = world.deepest[j, i] + lowest < required
-                    closing[j, i] = (
-                        instants < 0 or shallow or _may_close(world, (j, i), winds, buffers)
-                    )
+                    beyond = _may_close(world, (j, i), winds, buffers)
+                    closing[j, i] = instants < 0 or shallow or beyond
 
 
 @kernel_only
@@ -381,9 +380,8 @@ def _lowest_water_level(world):
             for i in range(values.shape[2]):
                 lowest = min(lowest, values[t, j, i, channel])
     margin = 0.0
-    for j in range(world.margins.shape[0]):
-        for i in range(world.margins.shape[1]):
-            margin = max(margin, world.margins[j, i, WATER_LEVEL])
+    for value in world.margins[:, :, WATER_LEVEL].flat:
+        margin = max(margin, value)
     return lowest - margin if lowest < math.inf else 0.0
 
 

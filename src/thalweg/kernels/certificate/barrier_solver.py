@@ -10,10 +10,9 @@ import numpy as np
 
 from thalweg.kernels.certificate.cell_conditions import (
     make_buffers,
-    margin_of_cell,
     read_cell,
 )
-from thalweg.kernels.certificate.mesh_sampling import sample_node, time_step_of
+from thalweg.kernels.certificate.mesh_sampling import margin_of_cell, sample_node, time_step_of
 from thalweg.kernels.codes import (
     CHANNEL_COUNT,
     CURRENT_EAST,
@@ -103,7 +102,6 @@ def _fill_times(world, ship, node, t, forward, sample, out):
     current_north = sample[CURRENT_NORTH] if flows else 0.0
     known = current_east == current_east and current_north == current_north
     constant = ship.needs == 0 and index[SPEED_FIELD] < 0
-    # a node is the south-west corner of its cell; what is found here is checked by cells
     drift = margin_of_cell(world, j, i, CURRENT_EAST)
     dlat = world.raster.corner[1] / world.refinement
     dlon = world.raster.corner[3] / world.refinement

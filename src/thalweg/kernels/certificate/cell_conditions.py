@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.certificate.known_limits import has_limits, limits_are_known
-from thalweg.kernels.certificate.mesh_sampling import sample_node, time_step_of
+from thalweg.kernels.certificate.mesh_sampling import margin_of_cell, sample_node, time_step_of
 from thalweg.kernels.certificate.speed_ranges import (
     angle_from_bow_range,
     direction_range,
@@ -135,15 +135,6 @@ class CellBuffers(NamedTuple):
     speed: np.ndarray
     asked: np.ndarray
     answer: np.ndarray
-
-
-@kernel_only
-def margin_of_cell(world, j, i, channel):
-    """Return by how much the sea may differ from the raster in a cell of the mesh."""
-    margins, m = world.margins, world.refinement
-    row = min(world.first_row + j // m, margins.shape[0] - 1)
-    column = min(world.first_column + i // m, margins.shape[1] - 1)
-    return margins[row, column, channel]
 
 
 @jit

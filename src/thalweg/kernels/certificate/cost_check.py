@@ -13,7 +13,8 @@ from thalweg.kernels.certificate.barrier_check import (
     replace_unknown_currents,
     triangle_differences,
 )
-from thalweg.kernels.certificate.cell_conditions import make_buffers, margin_of_cell, read_cell
+from thalweg.kernels.certificate.cell_conditions import make_buffers, read_cell
+from thalweg.kernels.certificate.mesh_sampling import margin_of_cell
 from thalweg.kernels.codes import CURRENT_EAST
 from thalweg.kernels.compilation.decorators import kernel_only
 from thalweg.kernels.compilation.jit import jit

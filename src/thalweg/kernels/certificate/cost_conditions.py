@@ -11,9 +11,9 @@ from thalweg.kernels.certificate.cell_conditions import (
     fill_angles,
     fill_ranges,
     make_buffers,
-    margin_of_cell,
     read_cell,
 )
+from thalweg.kernels.certificate.mesh_sampling import margin_of_cell
 from thalweg.kernels.certificate.speed_ranges import (
     greatest_speed,
     least_consumption,

@@ -37,3 +37,12 @@ def sample_node(world, j, i, step, fraction, sample):
                     if weight != 0.0:
                         total += weight * values[step + later, row + up, column + side, k]
         sample[channels[k]] = total
+
+
+@kernel_only
+def margin_of_cell(world, j, i, channel):
+    """Return by how much the sea may differ from the raster in a cell of the mesh."""
+    margins, m = world.margins, world.refinement
+    row = min(world.first_row + j // m, margins.shape[0] - 1)
+    column = min(world.first_column + i // m, margins.shape[1] - 1)
+    return margins[row, column, channel]

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _MOST_VALUES = 60_000_000
 _MOST_CELLS = 400_000
-_LINE_TOLERANCE = 1e-4  # of the spacing
+_LINE_TOLERANCE = 1.6e-5  # [deg]: a line of the raster so far beyond the last of data is in them
 _LONGEST_CELL = 3.0  # sides of a cell [deg]: columns or rows are divided if one is longer
 _MUCH_FINER = 0.5  # of a spacing
 #: Variables that change the speed of a ship over ground.
@@ -126,6 +126,8 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
     if margins is None and notes and request.speed_field is None:
         margins = margins_of_data(request.sea.layers, fields)
         notes = notes if margins is None else []
+    elif margins is not None and not margins.any():  # the same everywhere
+        notes = []
     elif margins is not None and notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")
     if margins is None:
@@ -262,8 +264,8 @@ def _even_spacing(axis: FloatArray) -> float | None:
     if axis.size < 2:
         return None
     steps: FloatArray = np.abs(np.diff(axis))
-    middle = float(np.median(steps))
-    return middle if np.abs(steps - middle).max() < 1e-3 * middle else None
+    mean = abs(float(axis[-1]) - float(axis[0])) / steps.size  # so that the last line is one, too
+    return mean if np.abs(steps - mean).max() < 1e-3 * mean else None
 
 
 def _all_on_lines(
@@ -274,7 +276,7 @@ def _all_on_lines(
         if not isinstance(layer, GridLayer) or not isinstance(layer.grid, RectilinearGrid):
             return False
         for axis, start, step in zip((layer.grid.lat, layer.grid.lon), first, spacing):
-            place = (axis - start) / step
-            if np.abs(place - np.round(place)).max() > max(_LINE_TOLERANCE, 1e-3):
+            place = (np.asarray(axis, float) - start) / step
+            if np.abs(place - np.round(place)).max() * step > _LINE_TOLERANCE:
                 return False
     return True

@@ -9,10 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 
+from thalweg.core.arrays.raster_lines import (
+    ON_LINE,
+    cells_of_boxes,
+    combined_in_cells,
+    lines_with_raster,
+    places_of_raster,
+    values_on_lines,
+)
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, IntArray
 from thalweg.kernels.codes import CHANNEL_COUNT
 from thalweg.sea.frozen_fields import GridFields
@@ -26,7 +34,6 @@ from thalweg.sea.standard_names import CHANNEL_VARIABLES, VECTORS
 
 _MOST_VALUES: Final = 150_000_000  # of all layers, places and times that are compared
 _VALUES_AT_A_TIME: Final = 4_000_000
-_ON_LINE: Final = 1e-3  # of the spacing of the raster
 _POLAR: Final = 85.0  # [deg]: beyond it triangles are not plane in latitude and longitude
 
 
@@ -106,12 +113,15 @@ class _AxesOnRaster:
         turned = np.asarray(grid.lon, float)[:, None] + 360.0 * np.arange(-2.0, 3.0)
         lat_lines = (np.asarray(grid.lat, float) - fields.lat0) / fields.dlat
         lon_lines = (turned.ravel() - fields.lon0) / fields.dlon
-        row, column = _with_raster(lat_lines, rows), _with_raster(lon_lines, columns)
-        lat, lon = np.meshgrid(
-            fields.lat0 + fields.dlat * row, fields.lon0 + fields.dlon * column, indexing="ij"
+        row, lat_places = lines_with_raster(lat_lines, rows)
+        column, lon_places = lines_with_raster(lon_lines, columns)
+        lat_at, lon_at = (
+            fields.lat0 + fields.dlat * lat_places,
+            fields.lon0 + fields.dlon * lon_places,
         )
+        lat, lon = np.meshgrid(lat_at, lon_at, indexing="ij")
         found = grid.locate(lat.ravel(), lon.ravel())
-        weight = np.where(found.weight < 2.0 * _ON_LINE, 0.0, found.weight)
+        weight = np.where(found.weight < 2.0 * ON_LINE, 0.0, found.weight)
         area = layer.area
         lat_nodes = fields.lat0 + fields.dlat * np.arange(rows)
         lon_nodes = fields.lon0 + fields.dlon * np.arange(columns)
@@ -140,14 +150,15 @@ class _AxesOnRaster:
         for name, channel in zip(names, raster):
             own = np.asarray(found[name]).T.reshape(shape)
             known &= np.isfinite(own)
-            apart = np.hypot(apart, own - _on_lines(channel, self.lines))
+            apart = np.hypot(apart, own - values_on_lines(channel, self.lines))
         # where the raster is unknown in spite of known data nothing can be said
         apart = np.where(known, np.where(np.isfinite(apart), apart, np.inf), 0.0)
-        parts = [_starts(line) for line in self.lines]
+        parts = [places_of_raster(line) for line in self.lines]
         return _Comparison(
-            _in_cells(known, parts, np.logical_or), _in_cells(known, parts, np.logical_and),
-            _in_cells(apart, parts, np.maximum),
-        )  # fmt: skip
+            combined_in_cells(known, parts, np.logical_or),
+            combined_in_cells(known, parts, np.logical_and),
+            combined_in_cells(apart, parts, np.maximum),
+        )
 
 
 class _Comparison(NamedTuple):
@@ -208,7 +219,7 @@ class _TrianglesOnRaster:
             high = np.floor(ends.max(axis=2)).astype(int)
             high = np.minimum(high, [[rows - 2], [columns - 2]])
             one = np.flatnonzero((low <= high).all(axis=0))
-            number, cell = _boxes(low[:, one], high[:, one], columns - 1)
+            number, cell = cells_of_boxes(low[:, one], high[:, one], columns - 1)
             pairs.append((one[number], cell))
         triangle, cell = (np.concatenate(part) for part in zip(*pairs))
         order = np.argsort(cell, kind="stable")
@@ -255,53 +266,6 @@ class _TrianglesOnRaster:
             most[:, self.cells] = np.maximum.reduceat(apart, self.starts, axis=1)
         wide = times.size, *self.shape
         return _Comparison(somewhere.reshape(wide), np.zeros(wide, bool), most.reshape(wide))
-
-
-def _with_raster(own: FloatArray, count: int) -> FloatArray:
-    """Return lines within a raster with those of the raster itself, in steps of it."""
-    own = np.unique(own)
-    near, apart = np.round(own), np.diff(own)
-    tolerance = _ON_LINE * min(1.0, float(apart.min(initial=1.0)))
-    own = np.where(np.abs(own - near) < tolerance, near, own)
-    return np.union1d(own[(own >= 0.0) & (own <= count - 1)], np.arange(float(count)))
-
-
-def _starts(line: FloatArray) -> IntArray:
-    """Return the places of the lines of the raster among all lines."""
-    return np.flatnonzero(line == np.round(line))
-
-
-def _in_cells(values: Any, parts: Sequence[IntArray], combine: np.ufunc) -> Any:
-    """Combine values on lines (T, rows, columns) in each cell of the raster with its edges."""
-    for axis, starts in zip((1, 2), parts):
-        inside = combine.reduceat(values, starts[:-1], axis=axis)
-        # a part of `reduceat` ends before the next begins, the last one at the end
-        values = combine(inside, values.take(starts[1:], axis=axis))
-    return values
-
-
-def _on_lines(values: Float32Array, lines: tuple[FloatArray, FloatArray]) -> FloatArray:
-    """Return values of a raster (T, Y, X) where lines cross, (T, rows, columns)."""
-    found: FloatArray = np.asarray(values, float)
-    for axis, line in zip((1, 2), lines):
-        place = np.minimum(line.astype(int), values.shape[axis] - 2)
-        share = (line - place).reshape((-1, 1) if axis == 1 else (-1,))
-        low, high = found.take(place, axis=axis), found.take(place + 1, axis=axis)
-        # a node of weight zero may be unknown
-        found = np.where(
-            share == 0.0, low, np.where(share == 1.0, high, low + share * (high - low))
-        )
-    return found
-
-
-def _boxes(low: IntArray, high: IntArray, columns: int) -> tuple[IntArray, IntArray]:
-    """Return the number of a box and the flat number of a cell for all cells of all boxes."""
-    size = high - low + 1
-    count = size[0] * size[1]
-    number = np.repeat(np.arange(count.size), count)
-    within = np.arange(number.size) - np.repeat(np.cumsum(count) - count, count)
-    j, i = np.divmod(within, size[1][number])
-    return number, (low[0][number] + j) * columns + low[1][number] + i
 
 
 @dataclass(frozen=True, eq=False)
