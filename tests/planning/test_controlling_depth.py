@@ -77,7 +77,7 @@ def test_a_closed_bar_is_the_cause_and_not_the_end_of_the_data_beside_it() -> No
     assert error.details["reasons"]["no data"] > error.details["reasons"]["under-keel clearance"]
     assert "too shallow at that time: near 51.8" in error.possible
     assert "7.50 m are required, and the greatest depth is 8.00 m at 2026" in error.possible
-    assert "--depart-window" in error.remedy and "waiting" in error.remedy
+    assert "--depart-window" in error.remedy and "--no-wait" in error.remedy
     assert "gaps" not in error.remedy
 
 
