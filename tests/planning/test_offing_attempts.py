@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thalweg import Chart, Sea, Ship, Voyage
+from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.errors import NoPathError
 from thalweg.core.limits import Limits
 from thalweg.core.units import NAUTICAL_MILE
@@ -120,3 +120,17 @@ def test_a_way_far_round_the_shoals_gives_way_to_a_shorter_one_over_them(world, 
     found = [note for note in notes if note.startswith(SHOALS_OPENED)]
     assert bool(found) == opened
     assert all("with that water closed the route is 7" in note for note in found)
+
+
+@pytest.mark.slow
+def test_a_plan_much_longer_than_the_straight_line_states_that_narrow_channels_are_closed(world):
+    """Hanko - Rauma was 219 nm for 90 without a word, where the sea distance had a note."""
+    found = plan(
+        Voyage(start=(25.30, 56.60), goal=(25.42, 55.35), depart="2026-06-01"),
+        ship=SHIP,
+        sea=Sea.calm(),
+        chart=world,
+        proof=0.0,
+    )
+    (note,) = [one for one in found.notes if "in a straight line" in one]
+    assert note.startswith(f"{found.best.distance_nm:.0f} nm by sea for 68 nm in a straight line")

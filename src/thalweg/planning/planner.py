@@ -247,7 +247,7 @@ def _plan_with_approaches(context: PlanningContext, ends: list[Endpoint]) -> Pla
     offing = chosen_offing(context.voyage, context.ship)
     found = plan_off_land(
         at_sea, ends, offing, lambda c: _plan_at_sea(c, ends),
-        length_of=lambda plan: shortest_length(plan.routes),
+        length_of=lambda plan: 0.0 if plan.cancelled else shortest_length(plan.routes),
     )  # fmt: skip
     return sailing.with_approaches(found, context.voyage, context)
 

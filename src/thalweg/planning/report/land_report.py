@@ -25,7 +25,7 @@ from thalweg.planning.report.closed_way_report import (
     ways_of_names,
     ways_on_line,
 )
-from thalweg.planning.report.distance_report import shoal_detour_notes
+from thalweg.planning.report.distance_report import roundabout_notes, shoal_detour_notes
 from thalweg.planning.request.chart_restrictions import canal_restriction, excluded_canal_note
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -80,7 +80,11 @@ def land_notes(context: PlanningContext, route: Route) -> list[str]:
             *(["unchecked"] if "unchecked" in passage.source else []),
         ]
         notes.append(f"{PASSES}{passage.name} ({'; '.join(facts)}).")
-    return notes + closed_passage_notes(context, route)
+    closed = closed_passage_notes(context, route)
+    if not closed and context.chart.passages and not context.voyage.via:
+        ends = [(float(route.track.lat[k]), float(route.track.lon[k])) for k in (0, -1)]
+        closed = list(roundabout_notes(ends, route.distance_nm * NAUTICAL_MILE))
+    return notes + closed
 
 
 def nearest_land_notes(chart: Chart, route: Route) -> list[str]:

@@ -21,7 +21,6 @@ from thalweg.search.certificate.barrier_raster import (
     freeze_barrier_raster,
     greatest_value,
     is_uniform,
-    strongest_current_of_raster,
 )
 from thalweg.search.certificate.closed_water import cells_inside
 
@@ -112,6 +111,7 @@ class BarrierDomain:
     fastest : Upper bound of the speed over ground [m/s].
     ship : With an upper bound of the speed through water, also where that is a field.
     margins : By how much the sea may differ from the raster (`BarrierRaster`).
+    strongest_current : No current in the domain is stronger [m/s]; 0 without currents.
     """
 
     raster: RasterArrays
@@ -119,6 +119,7 @@ class BarrierDomain:
     fastest: float
     ship: ShipInBarrier
     margins: FloatArray
+    strongest_current: float
 
     @classmethod
     def around(
@@ -163,7 +164,8 @@ class BarrierDomain:
         frozen = _frozen(stretch, flows, _GLOBE, cells)
         top, speed = _greatest_speeds(stretch, frozen)
         sampling = frozen.sampling if flows or ship.speed_field is not None else ""
-        return cls(frozen.arrays, sampling, speed, replace(ship, top_speed=top), frozen.margins)
+        ship = replace(ship, top_speed=top)
+        return cls._of(replace(frozen, sampling=sampling), speed, ship)
 
     @classmethod
     def _within_reach(
@@ -190,11 +192,15 @@ class BarrierDomain:
             certain = not frozen.sampling or bool(frozen.margins.any())
             is_least = fastest <= max(speed, least) * _MARGIN or attempt >= _ATTEMPTS // 2
             if speed <= fastest * _MARGIN and (is_least or not certain):
-                ship = replace(ship, top_speed=top)
-                return cls(frozen.arrays, frozen.sampling, speed, ship, frozen.margins)
+                return cls._of(frozen, speed, replace(ship, top_speed=top))
             fastest = max(speed, least)
             del frozen  # its memory is free before the next is read
         return None
+
+    @classmethod
+    def _of(cls, frozen: BarrierRaster, fastest: float, ship: ShipInBarrier) -> BarrierDomain:
+        strongest = frozen.strongest_current
+        return cls(frozen.arrays, frozen.sampling, fastest, ship, frozen.margins, strongest)
 
     def has_cells(self, wanted: int) -> bool:
         """Return whether the raster has the cells wanted; else the data decide on them."""
@@ -211,11 +217,6 @@ class BarrierDomain:
     def cell_height(self) -> float:
         """Height of a cell of the raster [m]."""
         return float(self.raster.corner[1]) * 111_132.0
-
-    @property
-    def strongest_current(self) -> float:
-        """The strongest current in the domain [m/s]; 0 without currents."""
-        return strongest_current_of_raster(self.raster, self.margins)
 
     def from_departure(self, later: float) -> BarrierDomain:
         """Return the domain with times since a departure later than the first by so much [s]."""
@@ -253,7 +254,7 @@ def _greatest_speeds(stretch: StretchToBound, frozen: BarrierRaster) -> tuple[fl
     top = stretch.ship.top_speed
     if stretch.ship.speed_field is not None:
         top = greatest_value(frozen.arrays, SPEED_FIELD)
-    speed = top + strongest_current_of_raster(frozen.arrays, frozen.margins)
+    speed = top + frozen.strongest_current
     return top, max(speed, stretch.canal_speed(speed))
 
 

@@ -53,11 +53,13 @@ class BarrierRaster:
     margins : float64[Y - 1, X - 1, CHANNELS]
         By how much the sea may differ from the raster in each cell, by channel
         (`margins_of_samples`, `margins_of_data`); (1, 1, CHANNELS) where that is the same in all.
+    strongest_current : No current is stronger [m/s]; 0 without currents.
     """
 
     arrays: RasterArrays
     sampling: str
     margins: FloatArray
+    strongest_current: float
 
 
 @dataclass(frozen=True)
@@ -122,17 +124,20 @@ def freeze_barrier_raster(request: RasterRequest) -> BarrierRaster:
             notes.append(f"and every {step / 60.0:.0f} minutes")
     if _layers_overlap(request):
         notes.append("a sea of overlapping files joined at the points of the finest")
-    margins = _margins(request, fields)
+    margins, strongest = _margins(request, fields), math.inf
     if margins is None and notes and request.speed_field is None:
-        margins = margins_of_data(request.sea.layers, fields)
-        notes = notes if margins is None else []
+        found = margins_of_data(request.sea.layers, fields)
+        if found is not None:
+            (margins, strongest), notes = found, []
     elif margins is not None and not margins.any():  # the same everywhere
         notes = []
     elif margins is not None and notes:
         notes.append("and between samples by the Lipschitz bounds of its functions")
     if margins is None:
         margins = np.zeros((1, 1, CHANNEL_COUNT))
-    return BarrierRaster(_arrays(fields, request.period[0]), ", ".join(notes), margins)
+    arrays = _arrays(fields, request.period[0])
+    strongest = min(strongest, strongest_current_of_raster(arrays, margins))
+    return BarrierRaster(arrays, ", ".join(notes), margins, strongest)
 
 
 def _spacing_of_raster(

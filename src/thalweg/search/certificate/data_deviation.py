@@ -7,6 +7,7 @@ a triangle of a mesh a value is a mean of those at its three corners. All is lin
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeAlias
@@ -22,7 +23,7 @@ from thalweg.core.arrays.raster_lines import (
     values_on_lines,
 )
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, IntArray
-from thalweg.kernels.codes import CHANNEL_COUNT
+from thalweg.kernels.codes import CHANNEL_COUNT, CURRENT_EAST
 from thalweg.sea.frozen_fields import GridFields
 from thalweg.sea.grids.grid_protocol import GridLocation
 from thalweg.sea.grids.gridded_layer import GridLayer
@@ -34,10 +35,25 @@ from thalweg.sea.standard_names import CHANNEL_VARIABLES, VECTORS
 
 _MOST_VALUES: Final = 150_000_000  # of all layers, places and times that are compared
 _VALUES_AT_A_TIME: Final = 4_000_000
+_ROUNDING: Final = 1e-9
 _POLAR: Final = 85.0  # [deg]: beyond it triangles are not plane in latitude and longitude
 
 
-def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> FloatArray | None:
+class DataMargins(NamedTuple):
+    """By how much data may differ from a raster.
+
+    Attributes
+    ----------
+    margins : float64[Y - 1, X - 1, CHANNELS]
+        In each cell; of vectors the length of the difference, for both components.
+    strongest_current : Of the data [m/s]; inf where they were not compared.
+    """
+
+    margins: FloatArray
+    strongest_current: float
+
+
+def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> DataMargins | None:
     """Return by how much data may differ from a raster, in each of its cells.
 
     Nodes that the raster does not know are filled in cells in which the data are known somewhere.
@@ -49,9 +65,8 @@ def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> FloatArray |
 
     Returns
     -------
-    float64 array (Y - 1, X - 1, CHANNELS), or None
-        Of vectors the length of the difference, for both components. None where a layer is no grid
-        in files, or there are too many places and times to compare.
+    DataMargins or None
+        None where a layer is no grid in files, or there are too many places and times to compare.
     """
     groups = _groups(fields)
     work = 0
@@ -72,9 +87,13 @@ def margins_of_data(layers: Sequence[Layer], fields: GridFields) -> FloatArray |
         return None
     _, rows, columns, _ = fields.values.shape
     margins = np.zeros((rows - 1, columns - 1, CHANNEL_COUNT))
+    strongest = math.inf
     for group, here in parts:
-        margins[..., list(group)] = _of_group(group, here, fields)[..., None]
-    return margins
+        apart, size = _of_group(group, here, fields)
+        margins[..., list(group)] = apart[..., None]
+        if CURRENT_EAST in group:
+            strongest = size * (1.0 + _ROUNDING)
+    return DataMargins(margins, strongest)
 
 
 def _groups(fields: GridFields) -> list[tuple[int, ...]]:
@@ -122,6 +141,7 @@ class _AxesOnRaster:
         lat, lon = np.meshgrid(lat_at, lon_at, indexing="ij")
         found = grid.locate(lat.ravel(), lon.ravel())
         weight = np.where(found.weight < 2.0 * ON_LINE, 0.0, found.weight)
+        weight /= weight.sum(axis=1, keepdims=True)
         area = layer.area
         lat_nodes = fields.lat0 + fields.dlat * np.arange(rows)
         lon_nodes = fields.lon0 + fields.dlon * np.arange(columns)
@@ -146,11 +166,12 @@ class _AxesOnRaster:
         """Compare the values of variables with the channels of the raster, (T, Y, X) each."""
         found = self.layer.series_at(list(names), times, self.located)
         shape = times.size, *(line.size for line in self.lines)
-        known, apart = np.ones(shape, bool), np.zeros(shape)
+        known, apart, size = np.ones(shape, bool), np.zeros(shape), np.zeros(shape)
         for name, channel in zip(names, raster):
             own = np.asarray(found[name]).T.reshape(shape)
             known &= np.isfinite(own)
             apart = np.hypot(apart, own - values_on_lines(channel, self.lines))
+            size = np.hypot(size, own)
         # where the raster is unknown in spite of known data nothing can be said
         apart = np.where(known, np.where(np.isfinite(apart), apart, np.inf), 0.0)
         parts = [places_of_raster(line) for line in self.lines]
@@ -158,6 +179,7 @@ class _AxesOnRaster:
             combined_in_cells(known, parts, np.logical_or),
             combined_in_cells(known, parts, np.logical_and),
             combined_in_cells(apart, parts, np.maximum),
+            combined_in_cells(np.where(known, size, 0.0), parts, np.maximum),
         )
 
 
@@ -168,11 +190,13 @@ class _Comparison(NamedTuple):
     ----------
     somewhere, everywhere : Whether the data are known somewhere, and everywhere.
     apart : How far they are from the raster at most.
+    size : Their greatest length, of several variables as of a vector.
     """
 
     somewhere: BoolArray
     everywhere: BoolArray
     apart: FloatArray
+    size: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +271,7 @@ class _TrianglesOnRaster:
         located = GridLocation(self.used[:, None], np.ones((self.used.size, 1)))
         found = self.layer.series_at(list(names), times, located)
         known: BoolArray = np.ones((times.size, self.order.size), bool)
-        apart = np.zeros((times.size, self.order.size))
+        apart, size = np.zeros((2, times.size, self.order.size))
         cell = np.repeat(self.cells, np.diff(np.append(self.starts, self.order.size)))
         j, i = np.divmod(cell, self.shape[1])
         for name, channel in zip(names, raster):
@@ -257,15 +281,20 @@ class _TrianglesOnRaster:
             around = np.stack([channel[:, j + up, i + side] for up in (0, 1) for side in (0, 1)])
             farthest = np.maximum(high - around.min(axis=0), around.max(axis=0) - low)
             apart = np.hypot(apart, farthest)
+            size = np.hypot(size, np.maximum(np.abs(low), np.abs(high)))
         apart = np.where(known, np.where(np.isfinite(apart), apart, np.inf), 0.0)
-        somewhere, most = (
-            np.zeros((times.size, self.shape[0] * self.shape[1]), kind) for kind in (bool, float)
-        )
+        cells = times.size, self.shape[0] * self.shape[1]
+        somewhere, most, greatest = (np.zeros(cells, kind) for kind in (bool, float, float))
         if self.cells.size:
             somewhere[:, self.cells] = np.maximum.reduceat(known, self.starts, axis=1)
             most[:, self.cells] = np.maximum.reduceat(apart, self.starts, axis=1)
+            size = np.where(known, size, 0.0)
+            greatest[:, self.cells] = np.maximum.reduceat(size, self.starts, axis=1)
         wide = times.size, *self.shape
-        return _Comparison(somewhere.reshape(wide), np.zeros(wide, bool), most.reshape(wide))
+        nowhere = np.zeros(wide, bool)
+        return _Comparison(
+            somewhere.reshape(wide), nowhere, most.reshape(wide), greatest.reshape(wide)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,13 +317,15 @@ class _UniformOnRaster:
         """Compare the values of variables with the channels of the raster, (T, Y, X) each."""
         everywhere = np.ones((times.size, *self.shape), bool)
         own = self.layer.series(names, times[:1], np.zeros(1), np.zeros(1))
-        apart = np.zeros(raster[0].shape)
+        apart, size = np.zeros(raster[0].shape), 0.0
         for name, channel in zip(names, raster):
             apart = np.hypot(apart, float(own[name][0, 0]) - channel)
+            size = math.hypot(size, float(own[name][0, 0]))
         # at the corners of each cell
         sides = slice(None, -1), slice(1, None)
         most = np.maximum.reduce([apart[:, up, right] for up in sides for right in sides])
-        return _Comparison(everywhere, everywhere, np.where(np.isfinite(most), most, np.inf))
+        most = np.where(np.isfinite(most), most, np.inf)
+        return _Comparison(everywhere, everywhere, most, np.full(most.shape, size))
 
 
 _OnRaster: TypeAlias = _AxesOnRaster | _TrianglesOnRaster | _UniformOnRaster
@@ -314,8 +345,8 @@ def _of_group(
     group: tuple[int, ...],
     layers: Sequence[_OnRaster],
     fields: GridFields,
-) -> FloatArray:
-    """Return the greatest difference of the channels of a group in each cell, (Y - 1, X - 1)."""
+) -> tuple[FloatArray, float]:
+    """Return how far the channels of a group are off in each cell at most, and their size."""
     names = [CHANNEL_VARIABLES[channel] for channel in group]
     channels = [fields.values[..., fields.channel_index[channel]] for channel in group]  # views
     unknown = np.isnan(np.sum(channels, axis=0))
@@ -324,6 +355,7 @@ def _of_group(
     count, rows, columns, _ = fields.values.shape
     most, reached = (np.zeros((rows - 1, columns - 1), kind) for kind in (float, bool))
     left = np.ones((count, rows - 1, columns - 1), bool)  # cells that no layer before covers
+    size = 0.0
     for one in layers:
         covered = np.zeros(left.shape, bool)
         step = max(1, _VALUES_AT_A_TIME // max(1, one.size))
@@ -333,6 +365,7 @@ def _of_group(
             counts = left[part] & found.somewhere
             np.maximum(most, np.where(counts, found.apart, 0.0).max(axis=0), out=most)
             reached |= counts.any(axis=0)
+            size = max(size, float(np.max(found.size, where=counts, initial=0.0)))
             covered[part] = np.logical_and(found.everywhere, one.whole)
         if isinstance(one, _AxesOnRaster) and not np.any(one.layer.axis.gaps):
             # another layer holds between a time that is known and one that is not
@@ -346,7 +379,7 @@ def _of_group(
             needed[up : up + rows - 1, side : side + columns - 1] |= reached
     for channel in channels:
         channel[unknown & ~needed] = np.nan
-    return most
+    return most, size
 
 
 def _fill_unknown(values: Float32Array, unknown: BoolArray) -> None:
