@@ -11,6 +11,7 @@ from thalweg.core.types import Float32Array, FloatArray, IntArray
 
 #: Lines so near each other count as one, as a share of the spacing.
 ON_LINE: Final = 1e-3
+_ROUNDING: Final = 1e-9
 
 
 def lines_with_raster(own: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
@@ -21,7 +22,8 @@ def lines_with_raster(own: FloatArray, count: int) -> tuple[FloatArray, FloatArr
     """
     own = np.unique(own)
     near, apart = np.round(own), np.diff(own)
-    tolerance = ON_LINE * min(1.0, float(apart.min(initial=1.0)))
+    # turned by 360 degrees a line may be there twice, a rounding apart
+    tolerance = ON_LINE * min(1.0, float(apart[apart > _ROUNDING].min(initial=1.0)))
     line = np.where(np.abs(own - near) < tolerance, near, own)
     inside = (line >= 0.0) & (line <= count - 1)
     lines = np.union1d(line[inside], np.arange(float(count)))
