@@ -9,6 +9,7 @@ from thalweg.core.errors import NoRouteError
 from thalweg.network import check_network, lattice, shortest_path
 from thalweg.network.global_grid.ice_limits import northern_limit
 from thalweg.network.network_concatenation import CanalLink, concatenate_networks
+from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.report.zone_report import far_area_notes
 from thalweg.planning.request.chart_restrictions import (
     ICE_LIMIT_NORTH,
@@ -118,8 +119,8 @@ def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
         "engine": {"reference_speed_kn": 12.0}, "models": {"calm_water": "cubic"},
     }  # fmt: skip
 
-    def passed(currency, objective):
-        ship = Ship.from_dict({**data, "fuel": {**data["fuel"], "currency": currency}})
+    def passed(currency, objective, **more):
+        ship = Ship.from_dict({**data, "fuel": {**data["fuel"], "currency": currency, **more}})
         depart = "2026-01-01T00:00Z"
         voyage = Voyage(start=ELBE, goal=GDANSK, depart=depart, objective=objective)
         chart, notes = exclude_closed_canals(CHART, voyage, ship, ends)
@@ -129,7 +130,31 @@ def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
     assert passed("EUR", "fuel") == (True, [])
     open_, notes = passed("EUR", "cost")
     assert not open_ and len(notes) == 1
-    assert "Kiel Canal: its dues are in USD, the prices in EUR" in notes[0]
+    assert "Kiel Canal: they are in USD, the prices in EUR" in notes[0]
+    assert count_of_dangers(notes) == 1  # no summary leaves it out
+    assert passed("EUR", "cost", usd_rate=0.9) == (True, [])
+
+
+@pytest.mark.slow
+def test_a_least_cost_is_the_same_in_another_currency_at_its_rate():
+    def cheapest(price, **currency):
+        fuel = {"reference_t_per_day": 24.0, "price_per_t": price, **currency}
+        ship = Ship.from_dict(
+            {
+                "name": "x", "hull": {"draught_m": 5.0}, "speeds_kn": [8.0, 10.0, 12.0],
+                "fuel": fuel, "engine": {"reference_speed_kn": 12.0},
+                "models": {"calm_water": "cubic"}, "costs": {"hire_per_day": 20.0 * price},
+            }
+        )  # fmt: skip
+        depart = "2026-01-01T00:00Z"
+        voyage = Voyage(start=ELBE, goal=GDANSK, depart=depart, objective="cost")
+        return plan(voyage, ship=ship, sea=Sea.calm(), chart=CHART, resolution=40_000.0, proof=1.0)
+
+    dollars = cheapest(500.0)
+    euros = cheapest(400.0, currency="EUR", usd_rate=0.8)
+    assert euros.best.cost == pytest.approx(0.8 * dollars.best.cost, rel=1e-6)
+    assert euros.best.cost_parts["canal dues"] > 0.0
+    assert euros.lower_bound == pytest.approx(0.8 * dollars.lower_bound, rel=1e-3)
 
 
 def test_ice_latitudes_are_excluded_unless_the_voyage_goes_there():

@@ -10,15 +10,17 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import CORINTH, SUEZ, Canal
+from thalweg.chart.canals import CORINTH, SUEZ, Canal, canals_with_dues
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import positions_along
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
+from thalweg.planning.report.route_summary import cost_text
 from thalweg.route import Track, evaluate
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.file.price_reader import fuel_terms
+from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.schema.ship_schema import ShipFile
 
 
@@ -245,7 +247,20 @@ def test_dues_in_another_currency_leave_the_cost_unknown(world):
     places = through(SUEZ, (31.6, 32.3), (29.5, 32.5))
     route = evaluate(places, ship=BULKER, sea=CALM, chart=world, depart=0, terms=euros)
     assert route.cost is None and route.fuel_t > 0.0
-    assert any("dues are in USD" in text for text in route.assumptions)
+    assert any("fuel.usd_rate" in text for text in route.assumptions)
+    assert "prices in EUR, and no fuel.usd_rate is given" in cost_text(route, [SUEZ])
+
+
+def test_dues_are_paid_at_the_rate_of_the_dollar(world):
+    fuel = {"type": "hfo", "price_per_t": 500.0, "currency": "EUR", "usd_rate": 0.8}
+    places = through(SUEZ, (31.6, 32.3), (29.5, 32.5))
+    route = evaluate(
+        places, ship=BULKER, sea=CALM, chart=world, depart=0, terms=terms_of({"fuel": fuel})
+    )
+    dues = 0.8 * canals_with_dues([SUEZ], BULKER.file.hull)[0].fee
+    assert route.cost_parts["canal dues"] == pytest.approx(dues)
+    assert route.cost == pytest.approx(0.5 * 1000.0 * route.fuel_t + dues)
+    assert "USD at 0.8 EUR" in cost_text(route, [SUEZ])
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Ship
-from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.file.price_reader import fuel_terms
+from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.schema.ship_schema import ShipFile
 
 

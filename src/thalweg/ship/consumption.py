@@ -120,9 +120,11 @@ def _consumption_prices(name: str, price: float, ship: Ship, terms: FuelTerms) -
         return LegPrices(joule, joule, 0.0, ship.hotel_power * joule, consumption="energy")
     if name == "comfort":
         return LegPrices(price, price, consumption="squared_dose")
+    # without a rate of the dollar no canal with dues is open to the search
+    dues = price * (terms.dollar_rate if math.isfinite(terms.dollar_rate) else 1.0)
     if name == "cost" and terms.by_speed:
         cubed = price * terms.cubed_speed_price
-        return LegPrices(cubed, cubed, price * terms.time_price, 0.0, price, "cubed_speed")
+        return LegPrices(cubed, cubed, price * terms.time_price, 0.0, dues, "cubed_speed")
     if name == "co2" and terms.emits_by_speed:
         cubed = price * terms.cubed_speed_co2 / TONNE
         return LegPrices(cubed, cubed, consumption="cubed_speed")
@@ -131,7 +133,7 @@ def _consumption_prices(name: str, price: float, ship: Ship, terms: FuelTerms) -
         raise _unknown_price_error(name, ship)
     if name == "cost":
         second = price * terms.time_price
-        return LegPrices(inside, outside, second, ship.waiting_fuel_rate * outside, price)
+        return LegPrices(inside, outside, second, ship.waiting_fuel_rate * outside, dues)
     inside, outside = inside / TONNE, outside / TONNE
     return LegPrices(inside, outside, 0.0, ship.waiting_fuel_rate * outside)
 

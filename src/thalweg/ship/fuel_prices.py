@@ -14,22 +14,12 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, TONNE
-from thalweg.ship.methods.engine.european_charges import (
-    EuropeanCharges,
-    european_prices,
-)
-from thalweg.ship.methods.engine.fuel_properties import (
-    Fuel,
-    co2_mass,
-    equal_energy_mass,
-    fuel_named,
-)
-from thalweg.ship.schema.ship_schema import CostsSection, ShipFile
+from thalweg.ship.methods.engine.european_charges import EuropeanCharges, european_prices
+from thalweg.ship.methods.engine.fuel_properties import Fuel, co2_mass, equal_energy_mass
 
 FUEL_QUANTITIES: Final = ("fuel", "cost", "co2", "allowances", "penalty")
 FACTOR_OF_SHIP_FILE: Final = "price of the request, factor of the ship file"
 FACTOR_OF_REQUEST: Final = "price of the ship file, factor of the request"
-_GRAMS: Final = 1000.0  #: in a kilogram
 _SHARE_NOISE: Final = 1e-9  #: of shares that are quotients of lengths
 
 
@@ -47,6 +37,7 @@ class FuelTerms:
     price_outside, price_inside : Per kilogram, in ``currency``; NaN when unknown.
     eca_price_factor : Price inside over price outside; NaN where they are two prices of their own.
     own_carbon_factor : CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
+    dollar_rate : Price of a US dollar, in which canal dues are [currency/USD]; NaN when unknown.
     time_price : Price of time (hire) [currency/s].
     replaced_time_price : That of the ship file where a request replaced it; 0: none.
     cubed_speed_price : float
@@ -66,6 +57,7 @@ class FuelTerms:
     eca_price_factor: float = 1.0
     own_carbon_factor: float | None = None
     currency: str = ""
+    dollar_rate: float = 1.0
     time_price: float = 0.0
     replaced_time_price: float = 0.0
     cubed_speed_price: float = math.nan
@@ -93,10 +85,11 @@ class FuelTerms:
 
         Returns
         -------
-        dict : ``currency``, and ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``,
-            ``time_per_day`` and, where it counts, ``per_second_per_cubed_speed``; and
-            ``european_charges``, with what is ``not_counted`` for want of a price. A price of time
-            that a request replaced is ``replaced`` of ``time_per_day``.
+        dict : ``currency``, ``usd_rate`` where it is another and the rate is known, and
+            ``{"value", "source"}`` of ``fuel_per_t``, ``fuel_in_eca_per_t``, ``time_per_day`` and,
+            where it counts, ``per_second_per_cubed_speed``; and ``european_charges``, with what is
+            ``not_counted`` for want of a price. A price of time that a request replaced is
+            ``replaced`` of ``time_per_day``.
         """
         values = {
             "fuel_per_t": (self.price_outside * TONNE, "fuel"),
@@ -106,6 +99,8 @@ class FuelTerms:
         if self.by_speed:
             values["per_second_per_cubed_speed"] = (self.cubed_speed_price, "time")
         found: dict[str, Any] = {"currency": self.currency or "USD"}
+        if math.isfinite(self.dollar_rate) and found["currency"] != "USD":
+            found["usd_rate"] = self.dollar_rate
         found["european_charges"] = european_prices(self.charges)
         for name, (value, kind) in values.items():
             known = math.isfinite(value)
@@ -273,6 +268,7 @@ class FuelTerms:
             price_inside=self.price_inside if keeps else outside * factor,
             eca_price_factor=self.eca_price_factor if keeps else factor,
             currency="USD" if dollars else self.currency,
+            dollar_rate=1.0 if dollars else self.dollar_rate,
             time_price=self.time_price if time_usd_per_day is None else time_usd_per_day / DAY,
             replaced_time_price=self.replaced_time_price if time_usd_per_day is None else own,
             sources=self._sources_with(
@@ -313,72 +309,6 @@ class FuelTerms:
                 "Give both the price of fuel and the price of time, or change the ship file.",
                 currency=self.currency,
             )
-
-
-def fuel_terms(file: ShipFile) -> FuelTerms:
-    """Read fuels and prices from a ship file.
-
-    Without ``eca_type`` the ship burns the same fuel inside; the price inside is
-    ``eca_price_per_t``, or ``price_per_t`` times ``eca_price_factor``. The price of time is
-    ``costs.hire_per_day`` or ``costs.per_week``; ``costs.per_second_per_cubed_speed`` replaces
-    the price of fuel where there is none.
-
-    Raises
-    ------
-    InputError : For unknown fuels, two prices for the same thing, and two currencies.
-    """
-    given, costs = file.fuel, file.costs
-    outside = None if given.type is None else fuel_named(given.type)
-    inside = outside if given.eca_type is None else fuel_named(given.eca_type)
-    if given.eca_price_per_t is not None and given.gives("eca_price_factor"):
-        raise InputError(
-            "The price inside control areas is given twice.",
-            "It is fuel.eca_price_per_t, or fuel.price_per_t times fuel.eca_price_factor.",
-            "Keep one of them.",
-            key="fuel.eca_price_factor",
-        )
-    price = math.nan if given.price_per_t is None else given.price_per_t
-    own = given.eca_price_per_t
-    factor = given.eca_price_factor if own is None else math.nan
-    cubed = costs.per_second_per_cubed_speed
-    emitted = costs.co2_g_per_second_per_cubed_speed
-    return FuelTerms(
-        outside=outside,
-        inside=outside if inside == outside else inside,
-        price_outside=price / TONNE,
-        price_inside=(price * factor if own is None else own) / TONNE,
-        eca_price_factor=factor,
-        own_carbon_factor=given.carbon_factor,
-        currency=_currency(file),
-        time_price=_time_price(costs),
-        cubed_speed_price=math.nan if cubed is None else cubed,
-        cubed_speed_co2=math.nan if emitted is None else emitted / _GRAMS,
-    )
-
-
-def _time_price(costs: CostsSection) -> float:
-    """Return the price of time [currency/s]; 0 when the file gives none."""
-    if costs.hire_per_day is not None and costs.per_week is not None:
-        raise InputError(
-            "The price of time is given twice.",
-            "It is costs.hire_per_day or costs.per_week.",
-            "Keep one of them.",
-            key="costs.hire_per_day",
-        )
-    per_day = (costs.per_week or 0.0) / 7.0 if costs.hire_per_day is None else costs.hire_per_day
-    return per_day / DAY
-
-
-def _currency(file: ShipFile) -> str:
-    named = {file.fuel.currency, file.costs.currency} - {None}
-    if len(named) > 1:
-        raise InputError(
-            f"The ship file gives prices in {' and '.join(sorted(str(one) for one in named))}.",
-            "All prices of a ship are in one currency.",
-            "Give fuel and costs in the same one.",
-            key="costs.currency",
-        )
-    return named.pop() or "" if named else ""
 
 
 def _carbon_factor(fuel: Fuel | None, own: float | None) -> float:

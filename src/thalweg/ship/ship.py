@@ -13,8 +13,9 @@ from thalweg.core.units import KNOT
 from thalweg.ship import queries, ship_changes, ship_tabulation
 from thalweg.ship.condition_variables import HEADING_DEPENDENT
 from thalweg.ship.file import ship_builder
+from thalweg.ship.file.price_reader import fuel_terms
 from thalweg.ship.file.ship_file import library_names, read_ship
-from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import CrabAngleModel, ShipModel

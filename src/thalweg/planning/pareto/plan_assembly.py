@@ -319,16 +319,17 @@ def _notes(
 def _dues_notes(trade_off: TradeOffContext, best: RefereedCandidate, proof: Proof) -> list[str]:
     """Return a note where canal dues, which the bound leaves out, are part of the cost."""
     canals = canals_passed(best.route, trade_off.context.chart)
+    unit = trade_off.objective.terms.currency or "USD"
     dues = trade_off.objective.prices.dues * sum(canal.fee for canal in canals)
     rest = best.value - dues
     if not dues > 0.0 or not 0.0 < proof.certain <= rest or WITH_DUES in proof.kind:
         return []
     if trade_off.context.voyage.objective == "front":
-        return [f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD)."]
+        return [f"The bound of the cost leaves the canal dues out ({dues:,.0f} {unit})."]
     share = math.ceil(1000.0 * (1.0 - proof.certain / rest)) / 10.0
     return [
-        f"The bound of the cost leaves the canal dues out ({dues:,.0f} USD): of the cost without "
-        f"them, at most {share:.1f} % less is possible."
+        f"The bound of the cost leaves the canal dues out ({dues:,.0f} {unit}): of the cost "
+        f"without them, at most {share:.1f} % less is possible."
     ]
 
 

@@ -39,6 +39,7 @@ from thalweg.planning.report.waiting_report import (
 )
 from thalweg.planning.report.wave_report import TOO_STEEP
 from thalweg.planning.report.zone_report import FAR_AREAS, OVER_SPEED
+from thalweg.planning.request.chart_restrictions import EXCLUDED_BY_DUES
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
@@ -82,6 +83,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (TURNS_BACK, TURNS_ROUND),
     INSHORE_USED,
     (PASSAGE_CLOSED, PASSAGES_CLOSED),
+    EXCLUDED_BY_DUES,
     OTHER_WAYS,
     FILLED,
     CHECK_YEAR,

@@ -147,14 +147,14 @@ def fuel_text(route: Route) -> str:
 def cost_text(route: Route, canals: Sequence[Canal]) -> str:
     """Return the cost with its prices and their sources, and the canal dues in it."""
     dues = sum(canal.fee for canal in canals)
-    basis = " and ".join(dict.fromkeys(canal.fee_basis for canal in canals if canal.fee_basis))
-    basis = f" (by {basis})" if basis else ""
+    bases = " and ".join(dict.fromkeys(canal.fee_basis for canal in canals if canal.fee_basis))
+    basis = f" (by {bases})" if bases else ""
     if route.cost is None:
         paid = f"; canal dues {dues:,.0f} USD{basis}" if dues else ""
         return f"not known: {_why_unknown(route, 'no price of fuel or time')}{paid}"
-    word = "of it " if route.currency == "USD" else "without "
-    paid = f", {word}canal dues {dues:,.0f} USD{basis}" if dues else ""
-    prices = prices_text(route.prices)
+    prices, rate = prices_text(route.prices), (route.prices or {}).get("usd_rate")
+    at_rate = f" at {rate:g} {route.currency}" if rate else ""
+    paid = f", of it canal dues {dues:,.0f} USD{at_rate}{basis}" if dues else ""
     inside, outside = ((route.prices or {}).get(f"fuel{k}_per_t") or {} for k in ("_in_eca", ""))
     if route.fuel_eca_t and outside.get("value") and inside.get("value") == outside["value"]:
         prices += "; no dearer fuel in control areas, where at most 0.10 % of sulphur is allowed"
@@ -166,6 +166,8 @@ def _why_unknown(route: Route, usual: str) -> str:
     """Return why the fuel or the cost of a route is not known."""
     if not math.isfinite(route.time_h):
         return "the route cannot be sailed to its end"
+    if "canal dues" in route.cost_parts and route.cost_parts["canal dues"] is None:
+        return f"canal dues are in USD, prices in {route.currency}, and no fuel.usd_rate is given"
     charges, fuel = (route.prices.get(key) or {} for key in ("european_charges", "fuel_per_t"))
     if fuel.get("value") is not None and charges.get("voyage_share") and charges["euro_price"]:
         return "the FuelEU penalty of this fuel is not known; leave out the price of the euro"
@@ -183,12 +185,7 @@ def _parts_text(route: Route) -> str:
 
 
 def prices_text(prices: Mapping[str, Any]) -> str:
-    """Return the prices that count, each with its source, such as ``fuel 300 USD/t (ship file)``.
-
-    Parameters
-    ----------
-    prices : As of `thalweg.ship.fuel_prices.FuelTerms.prices`.
-    """
+    """Return the prices of a route that count, such as ``fuel 300 USD/t (ship file)``."""
     currency = prices.get("currency", "USD")
 
     def value(name: str) -> float | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -24,6 +25,7 @@ from thalweg.ship import Ship
 #: modelled, and the Northwest and Northeast Passages are north of the first.
 ICE_LIMIT_NORTH, ICE_LIMIT_SOUTH = 71.9, -60.0
 IN_WATER: Final = "in water "  #: the latitudes in the kind of a bound come after these words
+EXCLUDED_BY_DUES: Final = "Canal excluded for its dues: "  #: a note on such a canal begins so
 #: Canals are mentioned if the geodesics through them are at most so much longer, in all and [m].
 _DETOUR_RATIO, _DETOUR = 1.3, 500.0 * NAUTICAL_MILE
 _ICE_LIMIT_MARGIN = 3.0  # [deg] beyond the places of the voyage that remain open
@@ -35,8 +37,9 @@ def exclude_closed_canals(
     """Return the chart without canals that are forbidden or too small, and notes about them.
 
     The canals have the dues of the ship.
-    Canal dues are in USD: where the objective is a cost in another currency, canals with dues are
-    excluded as well. Only canals near the geodesic get a note.
+    Canal dues are in USD: where the objective is a cost in another currency, and the rate of the
+    dollar is not known, canals with dues are excluded as well. Only canals near the geodesic get a
+    note.
 
     Raises
     ------
@@ -49,12 +52,16 @@ def exclude_closed_canals(
     notes, closed = [], []
     for canal in chart.canals:
         why = canal_restriction(canal, ship)
+        note = excluded_canal_note(why)
         if not why and currency and canal.fee > 0.0:
-            why = f"{canal.title}: its dues are in USD, the prices in {currency}"
+            why = note = (
+                f"{EXCLUDED_BY_DUES}{canal.title}: they are in USD, the prices in {currency}. Give "
+                "the price of a dollar in the ship file (fuel.usd_rate)."
+            )
         if why:
             closed.append(canal.name)
             if any(_near_geodesic(canal, *pair) for pair in itertools.pairwise(ends)):
-                notes.append(excluded_canal_note(why))
+                notes.append(note)
     return (chart.without_canals(*closed) if closed else chart), notes
 
 
@@ -69,8 +76,8 @@ def excluded_canal_note(why: str) -> str:
 
 
 def _foreign_currency(voyage: Voyage, ship: Ship) -> str:
-    """Return the currency if the objective is a cost in another currency than USD, else ''."""
-    if not voyage.chooses_speeds:
+    """Return the currency if the objective is a cost in one without a rate of USD, else ''."""
+    if not voyage.chooses_speeds or math.isfinite(ship.fuel_terms.dollar_rate):
         return ""
     objective = priced_objective(voyage, ship)
     return objective.unit if objective.name == "cost" and objective.unit != "USD" else ""

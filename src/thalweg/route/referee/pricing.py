@@ -261,7 +261,7 @@ def _fuel_by_zone(
 def _canal_dues(
     sailed: SailedTrack, terms: FuelTerms, cost: FloatArray
 ) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return the dues of every leg, and notes; NaN in another currency than USD."""
+    """Return the dues of every leg [currency], and notes; NaN without the rate of the dollar."""
     fee = sailed.pieces.canals.fee
     canals = (sailed.pieces.canals.of(leg) for leg in sailed.pieces.canals.legs)
     paid = tuple(
@@ -274,7 +274,10 @@ def _canal_dues(
         return fee, paid
     if not terms.currency and (cost.any() or terms.time_price):
         return fee, (*paid, "The prices name no currency: US dollars are assumed.")
-    if terms.currency in ("", "USD") or not fee.any():
-        return fee, paid
-    note = f"Canal dues are in USD, prices in {terms.currency}: the cost is not known."
+    if math.isfinite(terms.dollar_rate) or not fee.any():
+        return fee * terms.dollar_rate if fee.any() else fee, paid
+    note = (
+        f"Canal dues are in USD, prices in {terms.currency}: the cost is not known. Give the price "
+        "of a dollar in the ship file (fuel.usd_rate)."
+    )
     return np.where(fee > 0.0, math.nan, 0.0), (*paid, note)

@@ -16,7 +16,7 @@ from thalweg.ship.file.part_builders import (
     resistance_methods,
     with_safety_limits,
 )
-from thalweg.ship.fuel_prices import fuel_terms
+from thalweg.ship.file.price_reader import fuel_terms
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, complete_hull
 from thalweg.ship.loading_state import Loading

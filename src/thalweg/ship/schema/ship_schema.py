@@ -170,7 +170,8 @@ class EngineSection(Section):
 class FuelSection(Section):
     """Fuels outside and inside emission control areas, their prices, and the fuel of a day at sea.
 
-    ``reference_t_per_day`` is the whole ship's: propulsion and hotel load.
+    ``reference_t_per_day`` is the whole ship's: propulsion and hotel load. ``usd_rate`` is the
+    price of a US dollar in the currency of the prices: canal dues are in dollars.
     """
 
     type: Text | None = None
@@ -181,6 +182,7 @@ class FuelSection(Section):
     eca_price_per_t: FuelPrice | None = None
     eca_price_factor: Annotated[Number, Field(gt=0.0, le=100.0)] = 1.0
     currency: Currency | None = None
+    usd_rate: Annotated[Number, Field(gt=0.0, le=1e6)] | None = None
 
 
 class LoadingSection(Section):
