@@ -125,6 +125,9 @@ def test_the_answer_is_json(analysis, made):
     text = json.dumps(found, allow_nan=False)
     assert json.loads(text) == found
     assert found["cycles"]["count"] == 11 and found["vessel"] == "244000000"
+    # of the complete cycles alone, without those that the record cuts off
+    hours = analysis.cycle_frame()["cycle [h]"].mean()
+    assert found["cycles"]["per_week"] == pytest.approx(168.0 / hours)
     still = analyse_tracks(made.frame, CYCLE.areas)
     assert still.calibration is None and list(still.models) == ["still water"]
     json.dumps(still.as_dict(), allow_nan=False)

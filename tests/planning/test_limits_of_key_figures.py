@@ -2,11 +2,15 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.objective import Objective
+from thalweg.core.time import parse_time
+from thalweg.core.units import HOUR
 from thalweg.planning.pareto.limited_plan import plan_within_limits
+from thalweg.sea.standard_names import EASTWARD_CURRENT, NORTHWARD_CURRENT
 from thalweg.ship.consumption import leg_prices
 
 SHIP = {
@@ -85,6 +89,56 @@ def test_the_least_cost_within_a_fuel_limit_is_found(planned):
     assert 0.998 * limit < found.best.fuel_t <= limit
     assert found.best.cost > free.best.cost
     assert found.best.time_h == pytest.approx(planned("time", fuel=limit).best.time_h, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def in_a_tide():
+    """Return plans in a uniform tide of 1.5 m/s: 8, 10 and 12 kn over 128 nm."""
+    coaster = Ship.from_dict(
+        {
+            "name": "coaster", "hull": {"draught_m": 5.2}, "speeds_kn": [8.0, 10.0, 12.0],
+            "engine": {"reference_speed_kn": 12.0, "reference_power_kw": 2000,
+                       "hotel_load_kw": 150, "sfoc_g_per_kwh": 200},
+            "fuel": {"type": "mgo"}, "models": {"calm_water": "cubic"},
+        }
+    )  # fmt: skip
+    start = parse_time("2026-03-01T00:00Z")
+
+    def east(time, lat, lon):
+        phase = (time - start) / HOUR - 4.0
+        return 1.5 * np.cos(2.0 * np.pi * phase / 12.4) + 0.0 * lat
+
+    sea = Sea.from_functions(
+        {EASTWARD_CURRENT: east, NORTHWARD_CURRENT: lambda time, lat, lon: 0.0 * lat}
+    )
+    chart = Chart.open_water(50.0, 52.0, -0.2, 4.2).without_eca()
+
+    def one(objective, **more):
+        voyage = Voyage(
+            start=(51.0, 0.3), goal=(51.0, 3.7), depart="2026-03-01T03:00Z", objective=objective,
+            **more,
+        )  # fmt: skip
+        return plan(voyage, ship=coaster, sea=sea, chart=chart, proof=2.0)
+
+    return one
+
+
+@pytest.mark.slow
+def test_a_limit_of_time_has_the_bound_of_a_latest_arrival(in_a_tide):
+    """It had the bound of the least fuel at any time: 40 % and more below the plan."""
+    limited = in_a_tide("fuel", at_most={"time": 11.0})
+    arriving = in_a_tide("fuel", arrive_by="2026-03-01T14:00Z")
+    assert limited.best.fuel_t == pytest.approx(arriving.best.fuel_t, rel=1e-6)
+    assert limited.lower_bound > 0.95 * limited.best.fuel_t
+
+
+@pytest.mark.slow
+def test_blocks_of_speed_are_shorter_where_long_ones_leave_much_of_a_limit(in_a_tide):
+    """10 kn for 3 h, then 8 kn, is 14.62 h; a quarter of the voyage at 10 kn burns too much."""
+    found = in_a_tide("time", at_most={"fuel": 2.5})
+    assert 2.45 < found.best.fuel_t <= 2.5
+    assert found.best.time_h < 14.7
+    assert any(note.startswith("Blocks of speed are") for note in found.notes)
 
 
 @pytest.mark.slow

@@ -110,6 +110,13 @@ def test_passages_are_closed_by_limits_and_opened_or_avoided_by_name(world):
     assert "Magellan" not in {p.name for p in avoided.passages}
     assert "suez" not in {canal.name for canal in avoided.canals}
     assert restricted(world, 0.0).passages == world.passages
+    opened = restricted(world, open=["all"], avoid=["Raftsund"])
+    every = {passage.name for passage in opened.passages}
+    assert "Raftsund" not in every
+    small = {p.name for p in world.passages if p.use == "small_or_local"}
+    wide = {p.name for p in world.passages if p.name in small and p.max_draught >= 12.0}
+    assert wide & every and names < every
+    assert not {p.name for p in world.passages if p.name in small and p.max_draught < 9.0} & every
     with pytest.raises(InputError, match="Bosporus"):
         restricted(world, avoid=["Bosphorus"])
     with pytest.raises(InputError, match="cannot be opened"):

@@ -130,7 +130,7 @@ def test_a_short_block_goes_and_its_cost_is_stated():
     (note,) = trade_off.notes
     assert (
         note.startswith("Speeds are ordered in blocks of at least 6 h")
-        and "0.0% to the fuel" in note
+        and "0.0 % to the fuel" in note
     )
     context.voyage = replace(context.voyage, method="exact")
     assert in_speed_blocks(trade_off, before) == before

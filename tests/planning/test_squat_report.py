@@ -6,7 +6,7 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
 from thalweg.planning.report.note_order import danger_first
 from thalweg.planning.report.provenance import given_route_warnings
-from thalweg.planning.report.squat_report import touches_bottom
+from thalweg.planning.report.squat_report import with_squat_violation
 from thalweg.sea import standard_names as nm
 from thalweg.ship.performance_sheet import performance_sheet
 
@@ -91,14 +91,17 @@ def test_a_route_on_which_squat_puts_the_ship_aground_is_no_success():
     """At 12 kn she squats about 1.1 m over a bar with 0.7 m under her keel at rest."""
     ship = Ship.from_dict(TANKER | {"hull": TANKER["hull"] | {"draught_m": 12.3}})
     _notes, route = notes_of(ship, min_ukc=0.5)
-    assert route.feasible and touches_bottom(route, ship)
+    aground = with_squat_violation(route, ship)
+    assert route.feasible and not aground.feasible
+    (violation,) = aground.violations
+    assert violation.reason == "under-keel clearance: with squat" and violation.value < -0.05
     _notes, slow = notes_of(ship, speed_kn=6.0, min_ukc=0.5)
-    assert not touches_bottom(slow, ship)
+    assert with_squat_violation(slow, ship) is slow
     shoal = Sea.from_functions({nm.BED_DEPTH: lambda time, lat, lon: 2.0 + 0.0 * lat})
     ashore = evaluate(
         LINE, ship=ship, sea=shoal, chart=CHART, depart="2026-03-10T03:00Z", strict=False
     )
-    assert not ashore.feasible and not touches_bottom(ashore, ship)  # stated as a limit
+    assert not ashore.feasible and with_squat_violation(ashore, ship) is ashore  # stated already
 
 
 def test_a_job_of_the_service_on_which_she_is_aground_is_not_feasible():
@@ -107,5 +110,8 @@ def test_a_job_of_the_service_on_which_she_is_aground_is_not_feasible():
     ship = Ship.from_dict(TANKER | {"hull": TANKER["hull"] | {"draught_m": 12.3}})
     voyage = Voyage(start=LINE[0], goal=LINE[1], depart="2026-03-10T03:00Z", min_ukc_m=0.5)
     found = plan(voyage, ship=ship, sea=SEA, chart=CHART)
-    assert found.best.feasible and touches_bottom(found.best, ship)
+    assert not found.best.feasible
     assert job_summary(found, 1.0)["feasible"] is False
+    (row,) = found.to_dict()["routes"]
+    assert row["feasible"] is False and "with squat" in row["violations"][0]["reason"]
+    assert "NOT KEPT: under-keel clearance: with squat" in str(found)

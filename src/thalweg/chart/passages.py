@@ -28,6 +28,7 @@ from thalweg.core.units import KNOT, NAUTICAL_MILE
 
 #: Ships at least this long [m] do not use passages for small or local ships.
 SMALL_SHIP_LENGTH: Final = 120.0
+EVERY_SMALL: Final = "all"  #: stands for the names of all passages for small or local ships
 USES: Final = ("trade", "small_or_local", "never")
 
 
@@ -161,7 +162,8 @@ def find_passages(names: Iterable[str]) -> list[Passage]:
     Parameters
     ----------
     names : iterable of str
-        Names, or their beginnings where these are unique: "great belt".
+        Names, or their beginnings where these are unique: "great belt". "all" stands for all that
+        are for small or local ships.
 
     Returns
     -------
@@ -173,7 +175,15 @@ def find_passages(names: Iterable[str]) -> list[Passage]:
     InputError
         If a name is unknown; the message lists similar names.
     """
-    return [_find_passage(str(name)) for name in names]
+    found = []
+    for name in map(str, names):
+        every = name.strip().casefold() == EVERY_SMALL
+        found += _small_or_local() if every else [_find_passage(name)]
+    return list(dict.fromkeys(found))
+
+
+def _small_or_local() -> list[Passage]:
+    return [passage for passage in PASSAGES if passage.use == "small_or_local"]
 
 
 def split_avoided(names: Sequence[str]) -> tuple[list[str], list[Passage]]:

@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.planning.report.output_files import write_route
     from thalweg.planning.report.provenance import given_route_warnings
     from thalweg.planning.report.route_summary import route_items
-    from thalweg.planning.report.squat_report import touches_bottom
+    from thalweg.planning.report.squat_report import with_squat_violation
     from thalweg.route import evaluate
 
     option_values.prepare_output_folder(arguments)
@@ -76,6 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         speed_kn=arguments.speed,
         min_ukc=arguments.ukc,
     )
+    route = with_squat_violation(route, ship)
     required = ship.min_under_keel_clearance if arguments.ukc is None else arguments.ukc
     files = []
     if arguments.out:
@@ -87,4 +88,4 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         items = route_items(route, sea=sea, chart=chart, ship=ship, notes=notes)
         print_route(route, items, notes, files, verbose=arguments.verbose)
-    return SUCCESS if route.feasible and not touches_bottom(route, ship) else NO_ROUTE
+    return SUCCESS if route.feasible else NO_ROUTE

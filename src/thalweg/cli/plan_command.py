@@ -16,7 +16,7 @@ from thalweg.core.errors import InputError
 from thalweg.kernels.compilation import warm_up
 
 if TYPE_CHECKING:
-    from thalweg.planning import Plan, Voyage
+    from thalweg.planning import Voyage
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
@@ -199,8 +199,8 @@ def _add_passage_options(group: Any) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help="passage that the ship may use though it is closed to ships of her size; may be "
-        "repeated",
+        help="passage that the ship may use though it is closed to ships of her size; all: all for "
+        "small or local ships that her draught, beam and air draught allow; may be repeated",
     )
     group.add_argument(
         "--avoid",
@@ -234,14 +234,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(made.to_json())
     else:
         print_plan(made, files, verbose=arguments.verbose)
-    return SUCCESS if made.best.feasible and not _is_aground(made) else NO_ROUTE
-
-
-def _is_aground(plan: Plan) -> bool:
-    """Return whether squat puts the ship on the bottom on the best route of a plan."""
-    from thalweg.planning.report.squat_report import touches_bottom
-
-    return plan.plot_context is not None and touches_bottom(plan.best, plan.plot_context.ship)
+    return SUCCESS if made.best.feasible else NO_ROUTE
 
 
 def requested_plan(arguments: argparse.Namespace) -> tuple[Voyage, dict[str, Any]]:

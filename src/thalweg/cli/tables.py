@@ -122,12 +122,16 @@ def print_passage_alternatives(console: Any, plan: Plan) -> None:
     from thalweg.chart.canals import CANALS
 
     titles = {canal.name: canal.title for canal in CANALS}
-    console.print("Other ways, by distance in calm water at the speed of the plan:")
+    console.print(
+        "Ways by distance in calm water at the speed of the plan; a plan that keeps off shoals and "
+        "to traffic lanes may be longer:"
+    )
     for row in plan.passage_alternatives:
         without, by = ("; ".join(titles.get(n, n) for n in row[k]) for k in ("without", "passes"))
+        which = f"without {without}" if without else "shortest way"
         text = (
             f"  {row['distance_nm']:,.0f} nm, {row['time_h']:,.1f} h, canal dues "
-            f"{row['canal_dues_usd']:,.0f} USD: {f'without {without}' if without else 'this plan'}"
+            f"{row['canal_dues_usd']:,.0f} USD: {which}"
             f"{f', by {by}' if by else ''}."
         )
         console.print(text, soft_wrap=True, markup=False)  # whole names on narrow terminals

@@ -33,6 +33,7 @@ from thalweg.planning.report.provenance import (
     provenance,
     route_warnings,
 )
+from thalweg.planning.report.squat_report import with_squat_violation
 from thalweg.planning.request.coverage_check import (
     check_argument_types,
 )
@@ -123,12 +124,31 @@ def plan(
         If no route exists within the limits (with the reasons counted).
     """
     chart = Chart.gshhg(usual_resolution()) if chart is None else chart
+    options: dict[str, Any] = {"network": network, "resolution": resolution, "progress": progress}
+    found = _plan_voyage(voyage, ship=ship, sea=sea, chart=chart, proof=proof, **options)
+    if found.plot_context is None:
+        return found
+    sailing = found.plot_context.ship
+    routes = tuple(with_squat_violation(route, sailing) for route in found.routes)
+    return replace(found, routes=routes)
+
+
+def _plan_voyage(
+    voyage: Voyage,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart,
+    proof: float | None,
+    **options: Any,
+) -> Plan:
+    """Return the plan of a voyage, for those that need it for others, too; arguments of `plan`."""
     check_argument_types(voyage, ship, sea, chart)
     ship = with_voyage_prices(ship, voyage)
     if voyage.min_ukc_m is not None:
         ship = ship.with_clearance(voyage.min_ukc_m)
-    options: dict[str, Any] = {"network": network, "resolution": resolution, "progress": progress}
-    replan: _Replan = partial(plan, proof=proof, **options)
+    network = options["network"]
+    replan: _Replan = partial(_plan_voyage, proof=proof, **options)
     if voyage.has_indicator_limits:
         from thalweg.planning.indicators.limited_voyage import plan_limited_voyage
 

@@ -117,7 +117,8 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
         ``"all"``).
     open : sequence of str
         Named passages (`thalweg.chart.passages`) that the ship may use though they are closed to
-        ships of her size.
+        ships of her size. ``"all"``: all those for small or local ships in which her draught, beam
+        and air draught allow it.
     avoid : sequence of str
         Named passages and canals that may not be used.
     offing_nm : float, optional

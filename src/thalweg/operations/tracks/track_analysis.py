@@ -216,7 +216,7 @@ class TrackAnalysis:
             and agreement of the models; None where unknown.
         """
         cycles, legs = self.cycle_frame(), self.leg_frame()
-        span = self.log.time[-1] - self.log.time[0]
+        mean_hours = float(cycles["cycle [h]"].mean()) if len(cycles) else None
         speeds = {
             kind: {"legs": len(part), "mean_kn": part.mean(), "std_kn": part.std()}
             for kind, part in (legs.groupby("activity").speed_kn if len(legs) else ())
@@ -230,8 +230,8 @@ class TrackAnalysis:
             "activities": self.statistics().to_dict("records"),
             "cycles": {
                 "count": len(cycles),
-                "per_week": len(cycles) * WEEK / span,
-                "mean_h": cycles["cycle [h]"].mean() if len(cycles) else None,
+                "per_week": WEEK / (mean_hours * HOUR) if mean_hours else 0.0,
+                "mean_h": mean_hours,
             },
             "speeds": speeds,
             "calibration": None if self.calibration is None else asdict(self.calibration),

@@ -56,7 +56,6 @@ def plan_within_limits(
 
     Parameters
     ----------
-    voyage : With ``at_most`` or ``at_least``.
     plan_one : Plans a voyage without such limits.
     other_routes : Routes of the voyage by other ways, called where no plan keeps the limits.
 
@@ -77,8 +76,9 @@ def plan_within_limits(
     that keeps it is varied until the limit is just kept. Where that is not known to be the best,
     the key figure is added to the objective with a growing weight (Lagrangian relaxation). All
     routes of these fronts are candidates. Where none keeps the limits, routes by other ways are.
-    The bound of the plan without limits holds for every route; that of the least time is raised
-    to when the front of a limited key figure, which no route is below, falls to the limit.
+    The bound of the plan without limits holds for every route, and that of the plan with the latest
+    arrival that a limit of time allows for those that keep it; that of the least time is raised to
+    when the front of a limited key figure, which no route is below, falls to the limit.
     """
     limits = IndicatorLimit.of_voyage(voyage)
     free = replace(voyage, at_most={}, at_least={})
@@ -111,7 +111,7 @@ def plan_within_limits(
     value, number, k = min(candidates)
     within = _assembled(voyage, found, plans[number], (k, value), limits)
     if voyage.objective != "time":
-        return within
+        return replace(within, proof=_proof_in_time(found.proof, _in_time(free, limits), plans))
     return replace(within, proof=_proof_within(found.proof, free, plans, limits))
 
 
@@ -344,6 +344,12 @@ def _assembled(
         )
     notes = tuple(dict.fromkeys((note, *source.notes)))
     return replace(found, voyage=voyage, routes=(route,), front=front, notes=notes)
+
+
+def _proof_in_time(proof: Proof, in_time: Voyage, plans: list[Plan]) -> Proof:
+    """Return the greatest of a bound and those of plans that arrive within the limits of time."""
+    proofs = [proof, *(plan.proof for plan in plans if plan.voyage == in_time)]
+    return max(proofs, key=lambda one: one.certain if math.isfinite(one.certain) else -math.inf)
 
 
 def _proof_within(

@@ -24,7 +24,7 @@ from thalweg.route.evaluators.polyline import polyline_of_track, track_of_polyli
 from thalweg.route.refinement.speed_profile import times_and_costs_by_setting
 
 #: A block is at least this share of the voyage where that is less than the requested duration.
-_SHARE_OF_PASSAGE = 0.25
+SHARE_OF_PASSAGE = 0.25
 _PIECE_SHARE = 0.25  # of a block: the longest piece whose setting is chosen
 _CLEARLY_WORSE = 0.02  # share of time or value that blocks add, for which other ones are tried
 _ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
@@ -108,7 +108,7 @@ def _blocked(
     """
     route, context = item.route, trade_off.context
     hours = route.legs["arrive"] - route.legs["depart"]
-    least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
+    least = min(block_duration, SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(context.ship.speeds, float)
     merged = merged_settings(route.track.setting, hours, speeds, least, late=True)
     if np.array_equal(merged, route.track.setting):
@@ -171,19 +171,25 @@ def _with_settings(track: Track, setting: NDArray[np.int64]) -> Track:
 def _note_costs(
     trade_off: TradeOffContext, before: list[RefereedCandidate], after: list[RefereedCandidate]
 ) -> None:
-    """Note what the blocks cost against speeds that change at will, at the same time."""
+    """Note what the blocks cost against speeds that change at will, arriving no later."""
     free = sorted((one.route.time_h, one.value) for one in before)
     time, value = (np.array(column) for column in zip(*free))
     value = np.minimum.accumulate(value)
-    changed = [new for old, new in zip(before, after) if new is not old]
+    changed = [(old, new) for old, new in zip(before, after) if new is not old]
     kept = sum(_has_short_blocks(trade_off, one.route) for one in after)
     if not changed and not kept:
         return
-    extra = [one.value / float(np.interp(one.route.time_h, time, value)) - 1.0 for one in changed]
+    extra = []
+    for old, new in changed:  # one that ends earlier is compared at the arrival it was asked for
+        least = float(np.interp(new.route.time_h, time, value))
+        earlier = new.route.time_h <= old.route.time_h
+        extra.append(new.value / (min(old.value, least) if earlier else least) - 1.0)
     hours = trade_off.context.voyage.least_speed_block_h
-    note = f"Speeds are ordered in blocks of at least {hours:g} h or a quarter of the voyage"
+    note = f"Speeds are ordered in blocks of at least {hours:.3g} h or a quarter of the voyage"
     if extra:
-        note += f", which adds up to {max(0.0, *extra):.1%} to the {trade_off.objective.name}"
+        note += (
+            f", which adds up to {100.0 * max(0.0, *extra):.1f} % to the {trade_off.objective.name}"
+        )
     if kept:
         note += f"; {kept} of {len(after)} routes keep shorter ones, to stay within the limits"
     trade_off.notes.append(f"{note}.")
@@ -193,7 +199,7 @@ def _has_short_blocks(trade_off: TradeOffContext, route: Route) -> bool:
     """Return whether a route holds a setting for less than the requested duration."""
     hours = route.legs["arrive"] - route.legs["depart"]
     block_duration = trade_off.context.voyage.least_speed_block_h * HOUR
-    least = min(block_duration, _SHARE_OF_PASSAGE * float(hours.sum()))
+    least = min(block_duration, SHARE_OF_PASSAGE * float(hours.sum()))
     speeds = np.asarray(trade_off.context.ship.speeds, float)
     setting = merged_settings(route.track.setting, hours, speeds, least, late=True)
     return not np.array_equal(setting, route.track.setting)

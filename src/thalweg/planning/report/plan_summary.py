@@ -347,7 +347,8 @@ def _choice(plan: PlanData) -> str:
     hours = hours_texts([time[k] for k in rows])
     amounts, unit = amount_column([values[k] for k in rows], unit)
     return "; ".join(
-        f"{chosen[k]} {hour} h {amount} {unit}" for k, hour, amount in zip(rows, hours, amounts)
+        f"{chosen[k]} {hour} h {amount} {unit}".rstrip()
+        for k, hour, amount in zip(rows, hours, amounts)
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -9,7 +10,8 @@ import numpy as np
 from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.time import format_time
 from thalweg.core.units import KNOT
-from thalweg.route import Route
+from thalweg.kernels.codes import DEPTH, REASONS
+from thalweg.route import Route, Violation
 from thalweg.ship import Ship
 from thalweg.ship.methods.shallow_water.squat import dynamic_under_keel_clearance
 from thalweg.ship.models.squat_model import SQUAT_METHODS
@@ -59,10 +61,14 @@ def least_water_with_squat(route: Route, ship: Ship) -> LeastWaterWithSquat | No
     return LeastWaterWithSquat(float(left[worst]), float(squat[worst]), int(known[worst]))
 
 
-def touches_bottom(route: Route, ship: Ship) -> bool:
-    """Return whether squat puts a ship on the bottom somewhere on a route."""
+def with_squat_violation(route: Route, ship: Ship) -> Route:
+    """Return a route that violates a limit where squat puts the ship on the bottom."""
     least = least_water_with_squat(route, ship)
-    return least is not None and least.clearance < -_TOUCHES
+    if least is None or not least.clearance < -_TOUCHES:
+        return route
+    time, lat, lon = (float(route.samples[name][least.sample]) for name in ("time", "lat", "lon"))
+    found = Violation(f"{REASONS[DEPTH]}: with squat", time, lat, lon, least.clearance, 0.0)
+    return replace(route, violations=(*route.violations, found))
 
 
 def squat_notes(route: Route, ship: Ship, min_ukc: float) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.chart.coast.snapping import joined_positions
 from thalweg.chart.offing import OffingDisc, disc_at
-from thalweg.chart.passages import Passage, find_passages, split_avoided
+from thalweg.chart.passages import EVERY_SMALL, Passage, find_passages, split_avoided
 from thalweg.core.errors import InputError
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -64,8 +65,9 @@ def restrict_passages(chart: Chart, voyage: Voyage, ship: Ship, offing: float) -
     ------
     InputError : If a passage or canal is unknown (with near matches), or both opened and avoided.
     """
-    opened = find_passages(voyage.open)
     canals, avoided = split_avoided(voyage.avoid)
+    named = [name for name in voyage.open if str(name).strip().casefold() != EVERY_SMALL]
+    opened = find_passages(named)
     for passage in opened:
         if passage in avoided or passage.use == "never":
             raise InputError(
@@ -74,6 +76,9 @@ def restrict_passages(chart: Chart, voyage: Voyage, ship: Ship, offing: float) -
                 "Leave it out.",
                 field="open",
             )
+    if len(named) < len(voyage.open):  # all of them whose water and bridges allow the ship
+        every = (one for one in find_passages([EVERY_SMALL]) if one not in avoided)
+        opened += [one for one in every if not size_restriction(replace(one, use="trade"), ship)]
     if canals:
         chart = chart.without_canals(*canals)
     closed = list(avoided)

@@ -287,16 +287,14 @@ def _limits_of_plan(found: Plan) -> dict[str, Any] | None:
 def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
     """Return the key figures of a plan for lists of jobs."""
     from thalweg.planning.report.plan_summary import quality_text
-    from thalweg.planning.report.squat_report import touches_bottom
 
-    best, known = found.best, found.plot_context
-    aground = known is not None and touches_bottom(best, known.ship)
+    best = found.best
     return {
         "from": found.provenance.get("from"),
         "to": found.provenance.get("to"),
         "objective": found.voyage.objective,
         "routes": len(found.routes),
-        "feasible": best.feasible and not aground,
+        "feasible": best.feasible,
         "cancelled": found.cancelled,
         "seconds": seconds,
         **route_totals(best),
@@ -306,7 +304,7 @@ def job_summary(found: Plan, seconds: float) -> dict[str, Any]:
 
 def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     from thalweg.planning.report.provenance import given_route_warnings
-    from thalweg.planning.report.squat_report import touches_bottom
+    from thalweg.planning.report.squat_report import with_squat_violation
     from thalweg.route import evaluate
 
     request = EvaluationRequest.model_validate(order.request)
@@ -329,6 +327,7 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     min_ukc = ship.min_under_keel_clearance if clearance is None else clearance
     warnings = given_route_warnings(route, chart=world.chart, sea=sea, ship=ship, min_ukc=min_ukc)
     route = replace(route, assumptions=tuple(dict.fromkeys((*warnings, *route.assumptions))))
+    route = with_squat_violation(route, ship)
     folder = Path(order.folder)
     write_json_file(folder / "route.json", route.as_dict())
     write_route_result(route, folder, 1, request.route_files.options(), stem=order.stem)
@@ -336,7 +335,7 @@ def _evaluate(order: JobOrder, stages: StageMessages) -> dict[str, Any]:
     write_json_file(folder / "limits.json", {"routes": [met]})
     return {
         "parts": ["limits"],
-        "feasible": route.feasible and not touches_bottom(route, ship),
+        "feasible": route.feasible,
         "seconds": stages.seconds(),
         "routes": 1,
         **route_totals(route),
