@@ -211,12 +211,15 @@ def _check_possible(
         )
     if arrive > request.arrive + LATE:
         late = arrive - request.arrive
+        # a ship that waits for a tide need not depart so much earlier
+        waits = fastest.best.waiting_h > 0.0
+        earlier = "" if waits else f", or depart about {duration_text(late)} earlier"
         raise NoRouteError(
             f"The ship cannot arrive at {utc_text(request.arrive)}.",
             f"At its highest speed of {top / KNOT:.1f} kn it arrives at {utc_text(arrive)}, "
             f"{duration_text(late)} later.",
-            f"Ask for that time or a later one, or depart about {duration_text(late)} earlier; "
-            "without a departure the latest one is found.",
+            f"Ask for that time or a later one{earlier}; without a departure the latest one is "
+            "found.",
         )
     if slow_arrival < request.arrive - EARLY:
         raise NoRouteError(

@@ -15,6 +15,7 @@ import numpy as np
 from thalweg.chart.chart import control_areas_in_force
 from thalweg.core.file_writing import write_text
 from thalweg.core.given_numbers import finite_or_none
+from thalweg.core.time import duration_text
 from thalweg.core.units import DAY, TONNE
 from thalweg.operations.dredging.cycle_records import DredgingCycle, SailedLeg, cycle_record
 from thalweg.operations.dredging.project import Project
@@ -27,11 +28,20 @@ if TYPE_CHECKING:
 
 WEEK = 7.0 * DAY
 _ROUNDING = 0.005  # clearances are written to so much [m]
+_SHORT = 2.0  # [d]: durations below it are written to the minute
+
+
+def _days_text(days: float) -> str:
+    """Return a duration to the hour, or to the minute for a short one."""
+    if days < _SHORT:
+        return duration_text(days * DAY)
+    return "{} d {} h".format(*divmod(round(24 * days), 24))
+
 
 #: Rows of the table: key, label, format.
 TABLE_ROWS = (
     ("production_m3_week", "production [1000 m3/week]", lambda v: f"{v / 1000:.1f}"),
-    ("duration_days", "duration", lambda v: "{} d {} h".format(*divmod(round(24 * v), 24))),
+    ("duration_days", "duration", _days_text),
     ("cycles", "cycles", lambda v: f"{v:d}"),
     ("distance_m", "sailed distance [1000 km]", lambda v: f"{v / 1e6:.2f}"),
     ("mean_load_factor", "mean load factor", lambda v: f"{v:.2f}"),

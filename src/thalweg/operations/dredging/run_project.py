@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 OPTIMISED, BASE_CASE = "optimised", "base case"
 _MUCH_WAITING = 0.15  # share of the time from which the loads of all cycles are chosen together
+_FEW_CYCLES = 20  # for which they are chosen together, too
 _MAX_BISECTIONS = 24  # of a depth; accurate to a millimetre
 _MAX_DEPTH = 200.0  # [m]
 
@@ -100,8 +101,9 @@ def run_project(
     ship is back at the loading site. For every load factor the legs out and back are searched
     exactly on the network (`thalweg.search.profile_search`), and the load with the highest
     production is taken, as in van Halem (2019), section 3.2.1. The choice is greedy: the effect on
-    later cycles is ignored. Where the ship waits more than 15 % of the time, the loads of all
-    cycles are chosen together (`load_sequence`), and a note says how much earlier they end. Where
+    later cycles is ignored. In projects of 20 cycles or fewer, and where the ship waits more than
+    15 % of the time, the loads of all cycles are chosen together (`load_sequence`), and a note says
+    how much earlier they end. Where
     the base case takes less time in all, its load on the best routes is tried, and the base case
     itself is the answer if that takes longer too; a note says so. The referee then evaluates every
     leg in small steps; its times are those of the project.
@@ -202,7 +204,8 @@ def _simulate_run(
     if impassable:
         notes = (f"Load factors above {max(possible):g} have no route at any tide.",)
     cycles = simulator.run()
-    if len(factors) > 1 and _waiting_share(cycles) > _MUCH_WAITING:
+    together_counts = _waiting_share(cycles) > _MUCH_WAITING or len(cycles) <= _FEW_CYCLES
+    if len(factors) > 1 and together_counts:
         loads = loads_of_least_time(simulator, latest=cycles[-1].end, report=watch.report)
         together = simulator.run(loads) if loads else cycles
         if together[-1].end < cycles[-1].end:
