@@ -11,6 +11,8 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, evaluate
 from thalweg.chart.passages import Passage
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.report.distance_report import offing_detour_notes
 from thalweg.planning.report.land_report import (
     closed_passage_notes,
     coasting_notes,
@@ -21,6 +23,7 @@ from thalweg.planning.report.note_order import count_of_dangers
 from thalweg.planning.request.chart_restrictions import exclude_closed_canals
 from thalweg.planning.request.offing_choice import restrict_passages
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.seaways import path_length_and_canals
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.route_tables import LEG_KINDS
 from thalweg.sea.standard_names import CURRENT
@@ -164,3 +167,29 @@ def test_a_passage_with_strong_streams_is_stated_where_no_current_is_known(world
     for note in notes:
         assert "Pentland Firth has tidal streams to 12 kn" in note
         assert count_of_dangers([note]) == 1
+
+
+def test_a_way_that_the_offing_closes_is_stated_with_its_place():
+    """Massawa to Hodeidah for a large ship was led 54 nm round, and the plan gave no reason."""
+    chart = replace(Chart.gshhg("l"), passages=())
+    ends = Endpoint("", 15.62, 39.56, 0.0), Endpoint("", 14.95, 42.88, 0.0)
+    by_channel = [(15.62, 39.56), (15.606, 39.775), (15.3, 40.21), (15.07, 41.87), (14.95, 42.88)]
+    north_about = [(15.62, 39.56), (16.39, 40.0), (16.4, 40.42), (14.95, 42.88)]
+    asked = []
+
+    def path(*_ends, offing):
+        asked.append(offing)
+        return by_channel if offing < 1.6 * NAUTICAL_MILE else north_about
+
+    seas = SimpleNamespace(chart=chart, graph_path=lambda *_ends: by_channel, path=path)
+    length = path_length_and_canals(chart, north_about)[0]
+    offing = 2.0 * NAUTICAL_MILE
+    (note,) = offing_detour_notes(seas, ends, length, offing)
+    assert asked == [1.5 * NAUTICAL_MILE]
+    shorter = (length - path_length_and_canals(chart, by_channel)[0]) / NAUTICAL_MILE
+    assert (
+        f"Keeps off land: a way about {shorter:.0f} nm shorter leads through water 1.4 nm" in note
+    )
+    assert "at 15 31.7N 039 53.2E" in note and "--offing 1.5" in note
+    assert offing_detour_notes(seas, ends, length, 0.0) == []
+    assert offing_detour_notes(seas, ends, 1.02 * length - 50.0 * NAUTICAL_MILE, offing) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -14,7 +15,7 @@ from thalweg.chart.depth.global_depth import NAME
 from thalweg.chart.depth.shoals import EXCESS
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import Position, densify, distance
+from thalweg.core.geodesy import Position, densify, distance, format_position_minutes
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.seaways import Seaways, path_length_and_canals
@@ -22,8 +23,14 @@ from thalweg.planning.seaways import Seaways, path_length_and_canals
 #: Ways without a draught have a note where they do not keep off water shallower than this [m].
 LEAST_DEPTH: Final = 2.5
 SHOAL_DETOUR: Final = "Keeps off shoal water"  #: a note on a way that is longer so begins so
+OFFING_DETOUR: Final = "Keeps off land"  #: a note on a way that is longer so begins so
 _CLEARLY_LONGER: Final = 0.03  # share of the way that it is longer ...
 _MANY_MILES: Final = 50.0 * NAUTICAL_MILE  # ... or so much
+#: ... for the offing; the graph is some percent too long itself
+_LONGER_OFF_LAND, _MILES_OFF_LAND = 0.03, 5.0 * NAUTICAL_MILE
+_PARTS_OF_OFFING: Final = (0.75, 0.5, 0.25)  # that are tried
+_STEP: Final = 0.25 * NAUTICAL_MILE  # along a way whose place nearest to land is sought
+_IN_PASSAGE: Final = 2.0 * NAUTICAL_MILE  # places so near the line of a passage are in it
 #: Ways so much longer than the straight line, up to so long [m], may miss a channel.
 _ROUNDABOUT: Final = 2.5
 _LONGEST_STRAIGHT: Final = 100.0 * NAUTICAL_MILE
@@ -95,6 +102,79 @@ def shoal_detour_notes(
         f"{longer / NAUTICAL_MILE:.0f} nm shorter, over that water{by}. See the chart; to compare, "
         "plan with --ignore-shoals.",
     )
+
+
+def offing_detour_notes(
+    seas: Seaways, ends: tuple[Endpoint, Endpoint], length: float, offing: float
+) -> list[str]:
+    """Return how much longer the offing makes a way, and where it closes the shorter one.
+
+    Parameters
+    ----------
+    seas : Of the ship, with the shoals that she avoids.
+    ends : Of the way, without approaches.
+    length : Of the way [m].
+    offing : That it keeps [m].
+
+    Returns
+    -------
+    list of str : A note, or none where ways that keep a part of the offing are not clearly shorter.
+
+    Raises
+    ------
+    InputError : If an end is on land on the chart of all seas.
+    NoRouteError : If there is no way.
+    """
+    worth = max(_LONGER_OFF_LAND * length, _MILES_OFF_LAND)
+    if offing <= 0.0 or length - _length_of(seas, seas.graph_path(*ends)) < worth:
+        return []
+    for share in _PARTS_OF_OFFING:
+        way = seas.path(*ends, offing=share * offing)
+        shorter = length - _length_of(seas, way)
+        if shorter >= worth:
+            break
+    else:
+        return []
+    off, place = _nearest_to_land(seas, way, ends, (0.9 * share * offing, offing))
+    if not math.isfinite(off):
+        return []
+    return [
+        f"{OFFING_DETOUR}: a way about {shorter / NAUTICAL_MILE:.0f} nm shorter leads through "
+        f"water {off / NAUTICAL_MILE:.1f} nm off land at {format_position_minutes(*place)}, nearer "
+        f"than the {offing / NAUTICAL_MILE:g} nm of the offing. If the chart shows that ships use "
+        f"it, plan with --offing {share * offing / NAUTICAL_MILE:.2g}."
+    ]
+
+
+def _nearest_to_land(
+    seas: Seaways, way: Sequence[Position], ends: Sequence[Endpoint], between: tuple[float, float]
+) -> tuple[float, Position]:
+    """Return where a way is nearest to land outside canals, passages and the ends, and how near.
+
+    Of places whose distance from land is between two values [m]; nearer ones are in narrow water
+    that is open whatever the offing. Infinite where there is none.
+    """
+    least, offing = between
+    line = np.array(way, float).T
+    lat, lon, leg = densify(line[0], line[1], _STEP)
+    off = np.asarray(seas.chart.coastline.shore_distance(lat, lon, cap=offing), float)
+    canal = np.asarray(seas.chart.canal_of_legs(*line[:, :-1], *line[:, 1:]))
+    off[:-1][canal[leg] >= 0] = np.inf
+    for passage in seas.chart.passages:
+        y, x, _part = densify(*passage.positions, NAUTICAL_MILE)
+        near = np.flatnonzero(off < offing)
+        if len(near):
+            beside = np.asarray(distance(lat[near, None], lon[near, None], y, x)).min(axis=1)
+            off[near[beside < _IN_PASSAGE]] = np.inf
+    for end in ends:
+        off[np.asarray(distance(lat, lon, end.lat, end.lon)) < 2.0 * offing] = np.inf
+    off[(off < least) | (off >= offing)] = np.inf
+    k = int(np.argmin(off))
+    return float(off[k]), (float(lat[k]), float(lon[k]))
+
+
+def _length_of(seas: Seaways, way: Sequence[Position]) -> float:
+    return path_length_and_canals(seas.chart, way)[0]
 
 
 def _clear_difference(length: float) -> float:

@@ -25,7 +25,11 @@ from thalweg.planning.report.closed_way_report import (
     ways_of_names,
     ways_on_line,
 )
-from thalweg.planning.report.distance_report import roundabout_notes, shoal_detour_notes
+from thalweg.planning.report.distance_report import (
+    offing_detour_notes,
+    roundabout_notes,
+    shoal_detour_notes,
+)
 from thalweg.planning.request.chart_restrictions import canal_restriction, excluded_canal_note
 from thalweg.planning.request.offing_choice import size_restriction
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -278,7 +282,7 @@ def _closed_on_shorter_way(
 
 
 def shoal_detour_notes_of_plan(context: PlanningContext, route: Route) -> list[str]:
-    """Return how much longer shoals make the shortest way of a planned voyage, as a note.
+    """Return how much longer shoals, or else the offing, make a planned voyage, as a note.
 
     Empty for short voyages, those with via points and those on charts without shoals.
     """
@@ -294,17 +298,23 @@ def shoal_detour_notes_of_plan(context: PlanningContext, route: Route) -> list[s
     offing, closed = chart.offing.distance, chart.zones.closed_shoals
     try:
         notes = shoal_detour_notes(seas, ends, offing=offing)
-        if notes or closed is None:
+        if notes:
             return list(notes)
         metres = float(np.asarray(route.legs["length"])[at_sea].sum())
-        notes = shoal_detour_notes(seas, ends, offing=offing, length=metres)
+        if closed is not None:
+            notes = shoal_detour_notes(seas, ends, offing=offing, length=metres)
         if not notes:
-            return []
+            return offing_detour_notes(seas, (ends[0], ends[1]), metres, offing)
         way = np.array(replace(seas, shoals=None).path(*ends, offing=offing))
+        lat, lon, _leg = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
+        over_closed = closed is not None and closed.contains(lat, lon).any()
+        return (
+            list(notes)
+            if over_closed
+            else offing_detour_notes(seas, (ends[0], ends[1]), metres, offing)
+        )
     except (InputError, NoRouteError):  # an end that the chart of all seas has on land
         return []
-    lat, lon, _leg = densify(way[:, 0], way[:, 1], NAUTICAL_MILE)
-    return list(notes) if closed.contains(lat, lon).any() else []
 
 
 def saved_length(route: Route, way: NarrowWay) -> float:

@@ -15,7 +15,7 @@ from thalweg.planning.report.approach_report import (
 )
 from thalweg.planning.report.closed_way_report import PASSAGE_CLOSED, PASSAGES_CLOSED
 from thalweg.planning.report.depth_report import CHECK_DEPTH, CROSSES_SHOAL
-from thalweg.planning.report.distance_report import SHOAL_DETOUR
+from thalweg.planning.report.distance_report import OFFING_DETOUR, SHOAL_DETOUR
 from thalweg.planning.report.filled_weather import FILLED
 from thalweg.planning.report.given_route_report import NEAR_LAND, TURNS_ROUND
 from thalweg.planning.report.ice_report import REACHES_ICE
@@ -96,7 +96,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (OUT_OF_RANGE, BELOW_LOWEST),
     SPEEDS_CHOSEN,
     DEPARTURES,
-    SHOAL_DETOUR,
+    (SHOAL_DETOUR, OFFING_DETOUR),
     LANE_DETOUR,
 )
 
