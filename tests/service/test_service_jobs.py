@@ -105,7 +105,10 @@ def test_files_and_profile_of_a_route(client, done):
     assert len(columns) == 1
     assert profile["lat"][0] == pytest.approx(47.0, abs=1e-4)
     assert profile["time"] == sorted(profile["time"])
-    assert client.get(f"{base}/routes/2.rtz").status_code == 404
+    absent = client.get(f"{base}/routes/2.rtz")
+    assert absent.status_code == 404 and "It has 1, numbered from 1" in absent.json()["detail"]
+    blind = client.get(f"{base}/beside.json")
+    assert blind.status_code == 404 and "no weather-blind route (number 0)" in blind.text
 
 
 def test_an_exported_route_is_evaluated_and_compared(client, done):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import secrets
 from collections.abc import AsyncIterator
 from typing import Annotated, Any, Final, Literal
@@ -57,6 +58,7 @@ ROUTE_MEDIA_TYPES: Final = {
     "kml": "application/vnd.google-earth.kml+xml",
     "csv": "text/csv",
 }
+_NUMBER_OF_FILE: Final = re.compile(r"_(\d{2,4})\.[a-z]+$")  # of a route, in names of files
 
 
 def job_dict(job: Job) -> dict[str, Any]:
@@ -310,7 +312,28 @@ def result_file(job_id: str, name: str, state: ServiceState) -> Any:
             "Results are there when a job is done, or cancelled after a first route.",
             "Follow its events, or look at its problem.",
         )
-    raise not_found("file", name, "The result of the job has no such file.")
+    raise _missing_file(job, name)
+
+
+def _missing_file(job: Job, name: str) -> ServiceError:
+    """Return the error for a file that a result does not have, in words of the request."""
+    if name == "beside.json":
+        return ServiceError(
+            404,
+            f"The plan {job.id} has no weather-blind route (number 0).",
+            "Plans that choose speeds leg by leg, in weather, have one.",
+            "Choose another route.",
+        )
+    number = _NUMBER_OF_FILE.search(name)
+    routes = (job.summary or {}).get("routes")
+    if number and isinstance(routes, int) and not 1 <= int(number[1]) <= routes:
+        return ServiceError(
+            404,
+            f"The plan {job.id} has no route {int(number[1])}.",
+            f"It has {routes}, numbered from 1.",
+            "Choose one of them.",
+        )
+    return not_found("file", name, "The result of the job has no such file.")
 
 
 @jobs_router.get("/plans/{job_id}/result")
