@@ -22,6 +22,7 @@ ENDS_IN_SMALL_WATERS = {
     ("Rio Grande bar (Lagoa dos Patos)", "last"),
     ("Beagle", "last"),
     ("Midfjorden (Alesund to Molde)", "last"),
+    ("Northeast Pass of Chuuk", "first"),
 }
 
 
