@@ -13,8 +13,8 @@ from thalweg.planning.sea_distance import sea_distance
 from thalweg.planning.seaways import Seaways, small_passages, world_chart
 
 pytestmark = pytest.mark.slow
-#: Ends in waters of their own: the Sea of Azov, the bay of Melbourne, two lagoons; and the western
-#: Beagle Channel, which ocean ships do not use.
+#: Ends in waters of their own: the Sea of Azov, the bay of Melbourne, three lagoons; and the
+#: western Beagle Channel, which ocean ships do not use.
 ENDS_IN_SMALL_WATERS = {
     ("Kerch Strait", "last"),
     ("Port Phillip Heads", "last"),
@@ -23,6 +23,7 @@ ENDS_IN_SMALL_WATERS = {
     ("Beagle", "last"),
     ("Midfjorden (Alesund to Molde)", "last"),
     ("Trikeri, Oreos and North Evoikos Channels", "last"),
+    ("Northeast Pass of Chuuk", "first"),
 }
 
 
