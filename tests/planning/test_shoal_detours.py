@@ -31,7 +31,7 @@ def test_the_shorter_way_over_shoals_is_stated(draught, via, miles):
     context = SimpleNamespace(chart=chart, voyage=SimpleNamespace(via=via))
     lat, lon = np.array(ends).T
     route = SimpleNamespace(
-        legs={"leg_kind": np.zeros(1, int)},
+        legs={"leg_kind": np.zeros(1, int), "length": np.full(1, 5900.0 * 1852.0)},
         track=SimpleNamespace(lat=lat, lon=lon),
         distance_nm=6000.0,
     )
@@ -41,6 +41,21 @@ def test_the_shorter_way_over_shoals_is_stated(draught, via, miles):
         assert note.startswith("Keeps off shoal water by the global depth layer")
         assert "over that water, by Sunda" in note and "--ignore-shoals" in note
         assert float(note.split(" nm shorter")[0].split()[-1]) == pytest.approx(miles, rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_shorter_way_over_a_reef_is_stated_without_advice_to_sail_it():
+    """Funafuti to Suva led over the Great Sea Reef."""
+    coaster = Ship.simple(12.0, 5.5, length_m=88.0)
+    found = plan(
+        Voyage(start="Funafuti", goal="Suva", depart="2026-06-01"),
+        ship=coaster,
+        sea=Sea.calm(),
+        proof=0.0,
+    )
+    assert 620.0 < found.best.distance_nm < 680.0
+    (note,) = [note for note in found.notes if note.startswith("Keeps off shoal water")]
+    assert "but crosses Great Sea Reef" in note and "--ignore-shoals" not in note
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ import numpy as np
 
 from thalweg.chart.approaches import PortApproach
 from thalweg.chart.depth.global_depth import NAME
+from thalweg.chart.depth.shoal_areas import SHOAL_AREAS
 from thalweg.chart.depth.shoals import EXCESS
 from thalweg.chart.passage_crossings import names_passed
 from thalweg.core.errors import NoRouteError
@@ -97,11 +98,27 @@ def shoal_detour_notes(
     lat, lon = np.array([place for way in ways for place in way], float).T
     names = names_passed(seas.chart.coastline, seas.chart.passages, lat, lon)
     by = f", by {', '.join(dict.fromkeys(names))}" if names else ""
+    reefs = _reefs_crossed(ways, seas.shoals.least)
+    if reefs:
+        return (
+            f"{SHOAL_DETOUR}: the shortest way for this draught is {longer / NAUTICAL_MILE:.0f} nm "
+            f"shorter, but crosses {', '.join(reefs)}. See the chart.",
+        )
     return (
         f"{SHOAL_DETOUR} by the {NAME}, which is coarse: the shortest way for this draught is "
         f"{longer / NAUTICAL_MILE:.0f} nm shorter, over that water{by}. See the chart; to compare, "
         "plan with --ignore-shoals.",
     )
+
+
+def _reefs_crossed(ways: Iterable[Sequence[Position]], depth: float) -> list[str]:
+    """Return the names of shoal areas of exact outline with less water [m] on some ways."""
+    import shapely
+
+    lines = [np.unwrap(np.array(way, float)[:, ::-1], period=360.0, axis=0) for way in ways]
+    found = shapely.MultiLineString([line for line in lines if len(line) > 1])
+    areas = (area for area in SHOAL_AREAS if area.is_exact and area.depth < depth)
+    return [area.name for area in areas if area.polygon.intersects(found)]
 
 
 def offing_detour_notes(
