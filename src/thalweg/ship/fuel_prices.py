@@ -37,7 +37,7 @@ class FuelTerms:
     price_outside, price_inside : Per kilogram, in ``currency``; NaN when unknown.
     eca_price_factor : Price inside over price outside; NaN where they are two prices of their own.
     own_carbon_factor : CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
-    dollar_rate : Price of a US dollar, in which canal dues are [currency/USD]; NaN when unknown.
+    usd_rate : Price of a US dollar [currency/USD]; NaN when unknown. Not used for prices in USD.
     time_price : Price of time (hire) [currency/s].
     replaced_time_price : That of the ship file where a request replaced it; 0: none.
     cubed_speed_price : float
@@ -57,7 +57,7 @@ class FuelTerms:
     eca_price_factor: float = 1.0
     own_carbon_factor: float | None = None
     currency: str = ""
-    dollar_rate: float = 1.0
+    usd_rate: float = math.nan
     time_price: float = 0.0
     replaced_time_price: float = 0.0
     cubed_speed_price: float = math.nan
@@ -69,6 +69,11 @@ class FuelTerms:
     def by_speed(self) -> bool:
         """Whether the cost of sailing follows the cubed speed, since fuel has no price."""
         return math.isnan(self.price_outside) and not math.isnan(self.cubed_speed_price)
+
+    @property
+    def dollar_rate(self) -> float:
+        """Price of a US dollar, in which canal dues are [currency/USD]; NaN when unknown."""
+        return 1.0 if self.currency in ("", "USD") else self.usd_rate
 
     @property
     def emits_by_speed(self) -> bool:
@@ -268,7 +273,6 @@ class FuelTerms:
             price_inside=self.price_inside if keeps else outside * factor,
             eca_price_factor=self.eca_price_factor if keeps else factor,
             currency="USD" if dollars else self.currency,
-            dollar_rate=1.0 if dollars else self.dollar_rate,
             time_price=self.time_price if time_usd_per_day is None else time_usd_per_day / DAY,
             replaced_time_price=self.replaced_time_price if time_usd_per_day is None else own,
             sources=self._sources_with(

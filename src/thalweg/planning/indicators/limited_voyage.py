@@ -71,7 +71,10 @@ def plan_limited_voyage(
     if not 0.0 < min(voyage.least_speed_block_h, block) < found.best.time_h:
         return found
     shorter = replace(voyage, speed_block_h=0.5 * min(voyage.least_speed_block_h, block))
-    other = plan_within_limits(shorter, plan_free, other_routes)
+    try:
+        other = plan_within_limits(shorter, plan_free, other_routes)
+    except NoRouteError:
+        return found
     if not other.best.time_h < (1.0 - _WORTHWHILE) * found.best.time_h:
         return found
     note = (

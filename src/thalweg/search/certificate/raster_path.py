@@ -128,7 +128,7 @@ def _fastest_in_cells(
     cell = np.minimum(places.astype(int), np.array(phi.shape) - 2)
     near = ndimage.maximum_filter(drift, size=3, mode="nearest")
     here = near[tuple(np.minimum(cell, np.array(drift.shape) - 1).T)]
-    arrival = phi[tuple(cell.T)]
+    arrival = np.minimum(phi[tuple(cell.T)], stretch.known)  # later where no ship gets
     apart = (here > _DRIFT * world.top_speed) | (
         _change_of_current(mesh, cell, arrival) > _SHARP * world.top_speed
     )

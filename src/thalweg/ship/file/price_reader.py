@@ -37,7 +37,7 @@ def fuel_terms(file: ShipFile) -> FuelTerms:
             key="fuel.eca_price_factor",
         )
     price = math.nan if given.price_per_t is None else given.price_per_t
-    own, currency = given.eca_price_per_t, _currency(file)
+    own = given.eca_price_per_t
     factor = given.eca_price_factor if own is None else math.nan
     cubed = costs.per_second_per_cubed_speed
     emitted = costs.co2_g_per_second_per_cubed_speed
@@ -48,8 +48,8 @@ def fuel_terms(file: ShipFile) -> FuelTerms:
         price_inside=(price * factor if own is None else own) / TONNE,
         eca_price_factor=factor,
         own_carbon_factor=given.carbon_factor,
-        currency=currency,
-        dollar_rate=_dollar_rate(given.usd_rate, currency),
+        currency=_currency(file),
+        usd_rate=math.nan if given.usd_rate is None else given.usd_rate,
         time_price=_time_price(costs),
         cubed_speed_price=math.nan if cubed is None else cubed,
         cubed_speed_co2=math.nan if emitted is None else emitted / _GRAMS,
@@ -79,10 +79,3 @@ def _currency(file: ShipFile) -> str:
             key="costs.currency",
         )
     return named.pop() or "" if named else ""
-
-
-def _dollar_rate(given: float | None, currency: str) -> float:
-    """Return the price of a US dollar in the currency of the prices; NaN when unknown."""
-    if currency in ("", "USD"):
-        return 1.0
-    return math.nan if given is None else given
