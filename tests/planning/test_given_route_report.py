@@ -45,6 +45,17 @@ def test_a_leg_near_a_cape_is_stated_with_place_time_and_the_usual_distance(char
     assert not any(note.startswith("Nearer to land") for note in small)
 
 
+def test_a_canal_on_the_approach_of_a_port_is_no_land(chart):
+    """Port Said to the Red Sea: 19 nm of land were stated, with the advice not to sail there."""
+    approach = chart.approaches.of(PORTS.lookup("EGPSD"))
+    (suez,) = [canal for canal in chart.canals if canal.name == "suez"]
+    line = [*suez.path, (28.5, 33.2)]
+    if suez.path[0][0] < suez.path[-1][0]:
+        line = [*suez.path[::-1], (28.5, 33.2)]
+    notes = notes_of([approach.line[0], *line], chart)
+    assert not any("crosses land" in note for note in notes)
+
+
 def test_a_leg_against_the_traffic_of_dover_strait_is_stated(chart):
     french_side = [(51.20, 2.00), (51.00, 1.67), (50.87, 1.47), (50.65, 1.20)]
     notes = notes_of(french_side, chart)

@@ -260,7 +260,8 @@ def test_dues_are_paid_at_the_rate_of_the_dollar(world):
     dues = 0.8 * canals_with_dues([SUEZ], BULKER.file.hull)[0].fee
     assert route.cost_parts["canal dues"] == pytest.approx(dues)
     assert route.cost == pytest.approx(0.5 * 1000.0 * route.fuel_t + dues)
-    assert "USD at 0.8 EUR" in cost_text(route, [SUEZ])
+    text = cost_text(route, [SUEZ])
+    assert "USD at 0.8 EUR" in text and f"canal dues {dues:,.0f})" in text
 
 
 @pytest.mark.parametrize(

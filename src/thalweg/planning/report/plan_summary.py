@@ -28,7 +28,7 @@ from thalweg.planning.report.route_summary import (
     weather_on_route,
     weather_text,
 )
-from thalweg.planning.request.chart_restrictions import IN_WATER
+from thalweg.planning.request.chart_restrictions import EXCLUDED_BY_DUES, IN_WATER
 from thalweg.route.indicator_columns import indicator_value
 from thalweg.route.number_texts import amount_column, amount_text, hours_texts
 from thalweg.ship.ship_assumptions import NO_DEPTH
@@ -234,6 +234,9 @@ def quality_text(plan: PlanData) -> str:
     deep = ""
     if CLOSED_SHOALS in plan.proof.kind:
         deep = " outside the shoal water that is closed here"
+    closed = [note for note in plan.notes if note.startswith(EXCLUDED_BY_DUES)]
+    names = [note.removeprefix(EXCLUDED_BY_DUES).partition(":")[0] for note in closed]
+    deep += f" without the {' and the '.join(names)}" if names else ""
     latitudes = plan.proof.kind.partition(IN_WATER)[2].partition(",")[0].partition(";")[0]
     for note in plan.notes:
         if note.startswith(SOUTH_LEFT_OUT):

@@ -175,8 +175,9 @@ def _why_unknown(route: Route, usual: str) -> str:
 
 
 def _parts_text(route: Route) -> str:
-    """Return the parts of a cost but canal dues, where there are two or more."""
-    parts = [(n, v) for n, v in route.cost_parts.items() if v is not None and n != "canal dues"]
+    """Return the parts of a cost, but canal dues in USD, where there are two or more."""
+    beside = "canal dues" if route.currency == "USD" else ""  # stated after the sum
+    parts = [(n, v) for n, v in route.cost_parts.items() if v is not None and n != beside]
     own = {"fuel": "propulsion"} if route.fuel_t is None else {}  # priced by speed
     known = {own.get(name, name): value for name, value in parts if value >= 0.5}
     if len(known) < 2:
