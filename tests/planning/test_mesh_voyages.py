@@ -70,7 +70,8 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
     assert any("the ship is" in note and "too deep" in note for note in answer["notes"])
     assert answer["provenance"]["networks"][0]["nodes"] > 8000
     best = answer["routes"][0]
-    assert best["feasible"]
+    assert not best["feasible"]
+    assert [one["reason"] for one in best["violations"]] == ["under-keel clearance: with squat"]
     assert best["waiting_h"] > 5.0
     assert best["min_ukc_m"] >= 0.5 - 1e-6
     assert best["time_h"] <= 8.2
@@ -89,7 +90,7 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
         capsys, *ends, *words[:-2], "--ukc", "0.5", "--network", "mesh", "--resolution", "0.3",
         code=NO_ROUTE,
     )  # fmt: skip
-    assert thinned["routes"][0]["feasible"]
+    assert len(thinned["routes"][0]["violations"]) == 1  # with squat, too
     assert thinned["routes"][0]["time_h"] == pytest.approx(best["time_h"], abs=0.01)
     # The flats are dry: without waiting there is no route.
     asked = ["32.65,-117.25", "32.63,-117.11", "--ship", "hopper-dredger", "--ukc", "0.5"]
