@@ -16,6 +16,7 @@ from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
 from thalweg.planning.plots.voyage_map import draw_map
+from thalweg.planning.report.squat_report import keeps_limits_at_rest
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.route import (
     Route,
@@ -106,7 +107,7 @@ def keeping_limits(
         where a number of waypoints was given.
     """
     context, voyage = plan.plot_context, plan.voyage
-    if context is None or options.max_waypoints is not None or not route.feasible:
+    if context is None or options.max_waypoints is not None or not keeps_limits_at_rest(route):
         return route, options
     if not _is_limited(route, context.ship):
         return route, options

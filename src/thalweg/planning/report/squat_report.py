@@ -19,6 +19,7 @@ from thalweg.ship.performance_sheet_seaway import squat_of_sheet
 
 SQUAT_UNCOUNTED: Final = "The clearance is that at rest"  #: a note on squat begins so
 _TOUCHES: Final = 0.05  # clearance with squat that is none [m]
+_WITH_SQUAT: Final = f"{REASONS[DEPTH]}: with squat"  # reason of a violation
 _ROUNDING: Final = 0.005  # clearances are written to so much [m]
 
 
@@ -67,8 +68,14 @@ def with_squat_violation(route: Route, ship: Ship) -> Route:
     if least is None or not least.clearance < -_TOUCHES:
         return route
     time, lat, lon = (float(route.samples[name][least.sample]) for name in ("time", "lat", "lon"))
-    found = Violation(f"{REASONS[DEPTH]}: with squat", time, lat, lon, least.clearance, 0.0)
+    found = Violation(_WITH_SQUAT, time, lat, lon, least.clearance, 0.0)
     return replace(route, violations=(*route.violations, found))
+
+
+def keeps_limits_at_rest(route: Route) -> bool:
+    """Return whether a route keeps all limits but for squat (`with_squat_violation`)."""
+    squat_alone = all(one.reason == _WITH_SQUAT for one in route.violations)
+    return squat_alone and bool(np.isfinite(route.arrive))
 
 
 def squat_notes(route: Route, ship: Ship, min_ukc: float) -> list[str]:
