@@ -78,7 +78,7 @@ def shoal_detour_notes(
     legs = list(pairwise(ends))
 
     def length_of(ways: Iterable[list[Position]]) -> float:
-        return sum(path_length_and_canals(seas.chart, way)[0] for way in ways)
+        return sum(_length_of(seas, way) for way in ways)
 
     try:
         on_graph = length_of(over.graph_path(*leg) for leg in legs)

@@ -8,10 +8,11 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.core.geodesy import densify, distance, format_position
+from thalweg.chart.canal_parts import part_number_of_legs
+from thalweg.core.geodesy import format_position
 from thalweg.core.given_numbers import to_number
 from thalweg.core.time import duration_text
-from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.types import BoolArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.planning.report.approach_report import (
     LAND_OF_LINES_BY_HAND,
@@ -40,7 +41,6 @@ from thalweg.ship import Ship
 TURNS_ROUND: Final = "Turns round"  #: a note on such a waypoint begins so
 NEAR_LAND: Final = "Nearer to land than usual"  #: a note on such legs begins so
 FILE_SPEED: Final = "Not the speed of the route file"  #: a note on legs with limits begins so
-_STEP_OF_CANAL, _BESIDE_CANAL = 0.25 * NAUTICAL_MILE, 0.5 * NAUTICAL_MILE
 _SHARP: Final = math.radians(150.0)  # alterations of course that no passage plan has at sea
 _LONGER: Final = 600.0  # that approaches take than ordered, from which on it is stated [s]
 _SAME_SPEED: Final = 0.05  # differences below this are none [kn]
@@ -71,8 +71,8 @@ def given_route_notes(route: Route, *, chart: Chart, ship: Ship) -> list[str]:
     notes += _turns_back(route, chart) + _near_land(route, chart, ship)
     notes += approach_speed_notes(route, ship)
     in_approach = _in_approach(route, chart)
-    canal = _in_canal(lat, lon, chart)  # which is land of the coastline
-    legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach & ~(canal[:-1] & canal[1:]))]
+    in_canal = part_number_of_legs(chart.canals, lat, lon) >= 0  # land of the coastline
+    legs = [slice(k, k + 2) for k in np.flatnonzero(in_approach & ~in_canal)]
     miles = max((most_miles_over_land(chart, lat[k], lon[k]) for k in legs), default=0.0)
     notes += [over_land_note("a port", miles)] if miles >= LAND_OF_LINES_BY_HAND else []
     for passage in passages_used(chart, route):
@@ -147,17 +147,6 @@ def file_speed_notes(route: Route) -> list[str]:
                 f"{limit[worst]:g} kn).{more} Order another with --speed."
             )
     return notes
-
-
-def _in_canal(lat: FloatArray, lon: FloatArray, chart: Chart) -> BoolArray:
-    """Return which positions lie on or beside the line of a canal."""
-    inside = np.zeros(len(lat), bool)
-    for canal in chart.canals:
-        line = np.array(canal.path, float)
-        y, x, _part = densify(line[:, 0], line[:, 1], _STEP_OF_CANAL)
-        off = np.asarray(distance(lat[:, None], lon[:, None], y, x)).min(axis=1)
-        inside |= off < _BESIDE_CANAL
-    return inside
 
 
 def _turns_back(route: Route, chart: Chart) -> list[str]:
