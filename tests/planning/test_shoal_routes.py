@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -105,10 +107,37 @@ def test_plans_with_depth_or_without_offing_or_of_own_charts_are_left_alone():
         (deep, plain),
         (Chart.open_water(), plain),
         (WORLD, voyage((40.4, -73.8), (42.4, -70.7), offing_nm=0.0)),
-        (WORLD, voyage((40.4, -73.8), (42.4, -70.7), ignore_shoals=True)),
     ):
         same, notes = add_shoals(chart, request, BULKER, calm, ENDS)
         assert same.zones.shoals is None and notes == []
+
+
+@pytest.mark.slow
+def test_with_shoals_ignored_reefs_stay_closed():
+    """The reefs of Fiji were crossed with the flag that a note on the coarse layer advises."""
+    ship = Ship.simple(12.0, 5.5, length_m=88.0)
+    found = plan(voyage("Suva", "Labasa", ignore_shoals=True), ship=ship, sea=Sea.calm(), proof=0.0)
+    assert not any(note.startswith("Crosses") for note in found.notes)
+    assert 170.0 < found.best.distance_nm < 185.0  # 167 over four reefs
+    assert any("Shoals were not avoided, as asked, but" in note for note in found.notes)
+
+
+def test_with_shoals_ignored_only_areas_that_dry_count():
+    asked = voyage((40.4, -73.8), (42.4, -70.7), ignore_shoals=True)
+    chart, (note,) = add_shoals(WORLD, asked, BULKER, Sea.calm(), ENDS)
+    closed = close_shoals(chart, ENDS)[0].zones.closed_shoals
+    assert "that dry" in note
+    usual, _ = add_shoals(WORLD, replace(asked, ignore_shoals=False), BULKER, Sea.calm(), ENDS)
+    default = close_shoals(usual, ENDS)
+    dry = [area for area in SHOAL_AREAS if area.dries and not area.is_exact]
+    assert {area.name for area in SHOAL_AREAS if closed.closes(area)} >= {area.name for area in dry}
+    nantucket = SHOAL_AREAS[0]
+    assert not closed.closes(nantucket) and default[0].zones.closed_shoals.closes(nantucket)
+    shoals = chart.zones.shoals
+    lat, lon = np.array([41.1]), np.array([-69.7])  # Nantucket Shoals
+    assert shoals.excess(lat, lon, lat, lon + 0.05)[0] == 0.0
+    reef = dry[0].polygon.representative_point()
+    assert shoals.excess(reef.y, reef.x, reef.y, reef.x + 0.01) > 10.0
 
 
 @pytest.mark.slow

@@ -184,7 +184,8 @@ def _add_passage_options(group: Any) -> None:
     group.add_argument(
         "--ignore-shoals",
         action="store_true",
-        help="count miles in shallow water like others; default: without depth data the ship keeps "
+        help="count miles in shallow water like others, but keep out of named areas that dry "
+        "(reefs, wind farms, oil fields); default: without depth data the ship keeps "
         "out of water shallower than the next depth contour beyond one and a half draughts where "
         "it can",
     )

@@ -128,7 +128,8 @@ class Voyage(IndicatorRequest, SearchRequest, VoyagePrices, Schedule, Itinerary)
         Search a layered network: ``{layers: S, fan: H, offset_nm: d}``, each one number, or a list
         with one number for every section between via points (`thalweg.network.layered_network`).
     ignore_shoals : bool
-        Whether miles in shoal water count like others, and none is closed. By default a plan on
+        Whether miles in shoal water count like others, and none is closed but for named areas that
+        dry (reefs, drying sands, wind farms, oil fields). By default a plan on
         the world's coasts without depth of its own keeps out of water shallower than one and a half
         draughts where it can, by the global depth layer (`thalweg.chart.depth.shoals`), and crosses
         no water that has much less than is required (`thalweg.chart.depth.closed_shoals`).

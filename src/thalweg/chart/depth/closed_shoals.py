@@ -84,6 +84,7 @@ class ClosedShoals:
     ----------
     depth : Water with less than this by the layer, or in named areas, is closed [m].
     area_depth : Named areas of exact outline with less than this are closed as well [m].
+    drying_areas : Whether areas that dry are closed where ``depth`` is zero, too.
     channels : tuple of tuple of (lat, lon)
         Lines within 4 nautical miles of which water is open, in named areas 1.5 [deg].
     discs : tuple of (lat, lon, radius)
@@ -101,6 +102,13 @@ class ClosedShoals:
     area_discs: tuple[OpenDisc, ...] = ()
     box: DegreeBox = WORLD_BOX
     area_depth: float = 0.0
+    drying_areas: bool = False
+
+    def closes(self, area: ShoalArea) -> bool:
+        """Return whether a named area has less water than is closed."""
+        if area.is_exact:
+            return area.depth < self.depth_of_areas
+        return area.depth < self.depth or (self.drying_areas and area.dries)
 
     @property
     def depth_of_areas(self) -> float:
@@ -111,7 +119,7 @@ class ClosedShoals:
     def has_rough_areas(self) -> bool:
         """Whether named areas without an exact outline are closed in the box."""
         return any(
-            area.depth < self.depth and not area.is_exact and _meets(area, self.box)
+            self.closes(area) and not area.is_exact and _meets(area, self.box)
             for area in SHOAL_AREAS
         )
 
@@ -133,12 +141,10 @@ class ClosedShoals:
 
     def text(self) -> str:
         """Return everything as text, for a fingerprint."""
-        open_water = hashlib.sha256(
-            repr(
-                (self.channels, self.discs, self.area_discs, self.box, self.depth_of_areas)
-            ).encode()
-        ).hexdigest()[:16]
-        return f"{CLOSED_SHOALS} {self.depth} {open_water}"
+        water = self.channels, self.discs, self.area_discs, self.box, self.depth_of_areas
+        open_water = hashlib.sha256(repr(water).encode()).hexdigest()[:16]
+        drying = " drying" if self.drying_areas else ""
+        return f"{CLOSED_SHOALS} {self.depth} {open_water}{drying}"
 
 
 @lru_cache(maxsize=4)
@@ -161,15 +167,13 @@ def closed_water_index(closed: ClosedShoals, no_go: tuple[Any, ...], cells: int)
 def _closed_shapes(closed: ClosedShoals) -> tuple[Any, ...]:
     import shapely
 
-    if closed.depth_of_areas <= 0.0:
+    if closed.depth_of_areas <= 0.0 and not closed.drying_areas:
         return ()
     ends = np.array([disc[:2] for disc in closed.discs]).reshape(-1, 2)
     named = [
         area
         for area in SHOAL_AREAS
-        if area.depth < (closed.depth_of_areas if area.is_exact else closed.depth)
-        and not area.contains(*ends.T).any()
-        and _meets(area, closed.box)
+        if closed.closes(area) and not area.contains(*ends.T).any() and _meets(area, closed.box)
     ]
     areas = [area.polygon for area in named if not area.is_exact]
     layer = _outlines_of_layer(closed.depth, closed.box) if closed.depth > 0.0 else ()

@@ -39,6 +39,11 @@ class ShoalArea:
     source: str = ""
     is_exact: bool = False
 
+    @property
+    def dries(self) -> bool:
+        """Whether it has no water for any ship: reefs, drying sands, wind farms, oil fields."""
+        return self.depth <= 0.0
+
     @cached_property
     def polygon(self) -> Any:
         """The area as a shapely polygon of longitude and latitude."""

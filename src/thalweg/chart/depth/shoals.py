@@ -9,7 +9,7 @@ the 5, 10 and 20 m contours for draughts below 3, 6 and 10 m. The factors are ou
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, lru_cache
 from typing import Any, Final, TypeAlias
@@ -41,6 +41,7 @@ _GENTLE: Final = 3.0  # contours: where the next point is deeper, the slope is s
 #: Areas that points of the layer stand for. Those of exact outline are closed as they are
 #: (`thalweg.chart.depth.closed_shoals`): a point would spread them over the channels beside them.
 _AREAS_OF_POINTS: Final = tuple(area for area in SHOAL_AREAS if not area.is_exact)
+_DEEPEST: Final = np.uint8(255)  # code of a depth
 GridPoints: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]  #: rows and columns
 _TILES: Final = 10  # tiles farther away than this are not told apart
 
@@ -75,12 +76,15 @@ class Shoals:
     harbours : tuple of (lat, lon)
         Positions round which it is so within 8 nautical miles, outside named areas that have none
         of them inside: the layer shows no dredged channels.
+    drying_only : Whether only the named areas without water count (reefs, rocks, drying sands, wind
+        farms, oil fields), and the layer does not.
     """
 
     contour: float
     least: float
     channels: tuple[tuple[Position, ...], ...] = field(default=(), repr=False)
     harbours: tuple[Position, ...] = ()
+    drying_only: bool = False
 
     @cached_property
     def arrays(self) -> ShoalArrays:
@@ -113,7 +117,8 @@ class Shoals:
     def text(self) -> str:
         """Return everything as text, for a fingerprint."""
         lines = hashlib.sha256(repr((self.channels, self.harbours)).encode()).hexdigest()[:16]
-        return f"shoals {self.contour} {self.least} {EXCESS} {lines}"
+        drying = " drying" if self.drying_only else ""
+        return f"shoals {self.contour} {self.least} {EXCESS} {lines}{drying}"
 
 
 @lru_cache(maxsize=4)
@@ -127,9 +132,12 @@ def _arrays(shoals: Shoals) -> ShoalArrays:
 def _arrays_without_harbours(shoals: Shoals) -> ShoalArrays:
     code = global_depth_codes().copy()
     deep = _deep_code(shoals)
-    _shoal_inside(code, _AREAS_OF_POINTS)  # so that the points beside the areas are found ...
+    areas = _areas_of_points(shoals)
+    if shoals.drying_only:
+        code[code > 0] = _DEEPEST
+    _shoal_inside(code, areas)  # so that the points beside the areas are found ...
     code[_beside_shoals(code, shoals)] = deep
-    _shoal_inside(code, _AREAS_OF_POINTS)  # ... and those in them do not become deeper by that
+    _shoal_inside(code, areas)  # ... and those in them do not become deeper by that
     for channel in shoals.channels:
         _deepen(code, _points_of_channel(channel), deep)
     depths = np.array([shoals.contour, shoals.least])
@@ -143,7 +151,9 @@ def _with_harbours(arrays: ShoalArrays, shoals: Shoals) -> ShoalArrays:
     """
     code = arrays.code.copy()
     ends = np.array(shoals.harbours).reshape(-1, 2)
-    areas = [_widened(area) for area in _AREAS_OF_POINTS if not area.contains(*ends.T).any()]
+    areas = [
+        _widened(area) for area in _areas_of_points(shoals) if not area.contains(*ends.T).any()
+    ]
     for place in shoals.harbours:
         row, column = _points_near((place,), HARBOUR)
         lat, lon = row / POINTS_OF_DEGREE - 90.0, column / POINTS_OF_DEGREE - 180.0
@@ -152,6 +162,10 @@ def _with_harbours(arrays: ShoalArrays, shoals: Shoals) -> ShoalArrays:
             shoal |= shapely.contains_xy(area, lon, lat)
         _deepen(code, (row[~shoal], column[~shoal]), _deep_code(shoals))
     return arrays._replace(code=code)
+
+
+def _areas_of_points(shoals: Shoals) -> Sequence[ShoalArea]:
+    return [a for a in _AREAS_OF_POINTS if a.dries] if shoals.drying_only else _AREAS_OF_POINTS
 
 
 def _deep_code(shoals: Shoals) -> np.uint8:

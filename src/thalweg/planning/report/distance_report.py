@@ -112,12 +112,12 @@ def shoal_detour_notes(
 
 
 def _reefs_crossed(ways: Iterable[Sequence[Position]], depth: float) -> list[str]:
-    """Return the names of shoal areas of exact outline with less water [m] on some ways."""
+    """Return the names of areas on some ways that dry or are exact with less water [m]."""
     import shapely
 
     lines = [np.unwrap(np.array(way, float)[:, ::-1], period=360.0, axis=0) for way in ways]
     found = shapely.MultiLineString([line for line in lines if len(line) > 1])
-    areas = (area for area in SHOAL_AREAS if area.is_exact and area.depth < depth)
+    areas = (area for area in SHOAL_AREAS if area.dries or (area.is_exact and area.depth < depth))
     return [area.name for area in areas if area.polygon.intersects(found)]
 
 

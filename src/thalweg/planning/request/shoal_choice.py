@@ -35,6 +35,10 @@ from thalweg.ship import Ship
 
 #: A note that shoal water was opened again begins so.
 SHOALS_OPENED: Final = "The route crosses shoal water"
+_IGNORED: Final = (
+    "Shoals were not avoided, as asked, but for named areas that dry (reefs, sands, wind farms, "
+    "oil fields). Check the depths on the chart."
+)
 #: Radii [m] of the open water round ends, where dredged channels lead through shoals.
 _RADII: Final = tuple(miles * NAUTICAL_MILE for miles in (8.0, 20.0, 45.0, 90.0))
 _WIDEST: Final = 250.0 * NAUTICAL_MILE  # of it where shoals reach farther out than that
@@ -66,12 +70,15 @@ def add_shoals(
     draught = float(ship.draught)
     depth_known = chart.has_depth or standard_names.BED_DEPTH in sea.variables
     near_land = chosen_offing(voyage, ship) <= 0.0
-    if voyage.ignore_shoals or depth_known or chart.approaches is None or near_land:
+    if depth_known or chart.approaches is None or near_land:
         return chart, []
     if not draught > 0.0:
         return chart, ["Shoals were not avoided: the draught of the ship is not known."]
     least = draught + required_under_keel_clearance(voyage, ship)
     shoals = shoals_of_draught(chart, draught, least, [(float(e.lat), float(e.lon)) for e in ends])
+    if voyage.ignore_shoals:
+        shoals = replace(shoals, drying_only=True)
+        return replace(chart, zones=replace(chart.zones, shoals=shoals)), [_IGNORED]
     note = (
         f"The route avoids water shallower than {shoals.contour:g} m where possible: the search "
         f"counts a mile there as up to 20 miles by the {NAME} and the named shoal areas; not near "
@@ -107,7 +114,11 @@ def close_shoals(
     if shoals is None or shoals.least <= 0.0:
         return chart, "", ()
     depth, area_depth = closing_depth(shoals.least), closing_depth_of_areas(shoals.least)
-    closed = ClosedShoals(depth, shoals.channels, box=_region(ends), area_depth=area_depth)
+    depth = 0.0 if shoals.drying_only else depth
+    closed = ClosedShoals(
+        depth, shoals.channels, box=_region(ends), area_depth=area_depth,
+        drying_areas=shoals.drying_only,
+    )  # fmt: skip
     found = [_open_water(chart, closed, (end.lat, end.lon)) for end in ends]
     enclosed = tuple(number for number, one in enumerate(found) if one is None)
     if enclosed:
@@ -130,12 +141,13 @@ def close_shoals(
     )
     if not closed.shapes:
         return chart, "", ()
+    less = f"with less than {area_depth:.1f} m"
     note = (
         f"Closed: named shoal areas, and water with less than {depth:.1f} m by the {NAME}, which "
         "is too coarse to close water by the draught itself; that water is open within 8 nm of the "
         "ends and in narrow passages."
         if depth > 0.0
-        else f"Closed: named shoal areas with less than {area_depth:.1f} m."
+        else f"Closed: named shoal areas {'that dry' if shoals.drying_only else less}."
     )
     wide = [
         f"{water.radius / NAUTICAL_MILE:.0f} nm of {end.name}{' (areas, too)' * water.areas}"

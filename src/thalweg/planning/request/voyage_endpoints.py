@@ -38,6 +38,10 @@ NOT_REACHED: Final = "Does not reach"  #: a note on a port far from the end of t
 _REACHED: Final = 2.0 * NAUTICAL_MILE
 #: Voyages shorter than this [m], or than the way to the sea or a canal, do not follow one.
 _SHORT_VOYAGE: Final = 20.0 * NAUTICAL_MILE
+_OWN_CHART: Final = (
+    "Lakes and inland seas (the Great Lakes, the Caspian Sea) are land on the world's coastline: "
+    "voyages there need a chart of your own, in Python (Chart.from_geojson)."
+)
 
 
 @dataclass(frozen=True)
@@ -174,7 +178,7 @@ def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
         raise InputError(
             f"The {what} {port.label} cannot be reached from the sea on this chart.",
             f"Reason: {reason}.",
-            "Choose another port, or a position at sea.",
+            "Choose another port, or a position at sea. " + _OWN_CHART,
         )
     found = _snap_to_water(port.label, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
     return replace(found, is_port=True)
@@ -234,7 +238,8 @@ def _snap_to_water(
             "Give that port by name, or a position at sea."
             if port
             else swap_hint(lat, lon, chart)
-            or "Choose another position, or a chart that covers it.",
+            or "Choose another position, or a chart that covers it."
+            + ("" if chart.approaches is None else f" {_OWN_CHART}"),
         )
     near_lat, near_lon, moved = found
     raise InputError(
