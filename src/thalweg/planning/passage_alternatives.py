@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -172,7 +172,7 @@ def _question(plan: PlanData) -> _Question | None:
     joins = voyage.offing_nm != 0.0
     ends = resolve_places(voyage.start, voyage.via, voyage.goal, chart, joins=joins)
     return _Question(
-        Seaways.of_ship_chart(chart),
+        replace(Seaways.of_ship_chart(chart), known_parts={}),
         tuple(without_small_ways(ends, ship_dimensions(context.ship))),
         chart.offing.distance,
         max(speed, 0.1 * KNOT),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from typing import Final, TypeAlias
 
@@ -50,6 +50,9 @@ _LEAST_GAIN: Final = 1e-5  # share of the cost that each waypoint saves
 #: Which legs (lat1, lon1, lat2, lon2) [deg] something is true of.
 LegTest: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], BoolArray]
 
+#: The passages that were closed, the way, and its cost.
+_PulledPart: TypeAlias = tuple[frozenset[str] | None, list[Position], float]
+
 
 @dataclass(frozen=True, eq=False)
 class Seaways:
@@ -62,6 +65,8 @@ class Seaways:
     passages : Names of passages of the chart that are not used.
     shoals : Shoal water, in which a mile counts more.
     south : Latitude that no way passes [deg].
+    known_parts : Parts of ways that were pulled before. Questions that close one passage or another
+        share them: most of their ways are the same.
     """
 
     chart: Chart
@@ -69,6 +74,7 @@ class Seaways:
     passages: tuple[str, ...] = ()
     shoals: Shoals | None = None
     south: float = -90.0
+    known_parts: dict[tuple[object, ...], _PulledPart] | None = field(default=None, repr=False)
 
     @classmethod
     def of_chart(cls, chart: Chart, avoid: Sequence[str], *, opened: Sequence[str] = ()) -> Seaways:
@@ -273,6 +279,23 @@ class Seaways:
             return self._pulled(chart, off_land, part[::-1])[::-1]
         if len(part) < 3:
             return positions_of(*part.T)
+        if self.known_parts is None:
+            return self._newly_pulled(chart, off_land, part)
+        key = part.tobytes(), off_land.offing, self.shoals
+        clear, closed = ClearWater(off_land, self.shoals), frozenset(self.passages)
+        before, way, cost = self.known_parts.get(key, (None, [], 0.0))
+        if before is not None and before <= closed:
+            lat, lon = np.array(way).T
+            blocked = np.any(chart.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+            if not blocked and clear.cost_of((lat, lon)) == cost:  # nothing that it uses is closed
+                return way
+        way = self._newly_pulled(chart, off_land, part)
+        lat, lon = np.array(way).T
+        self.known_parts.setdefault(key, (closed, way, clear.cost_of((lat, lon))))
+        return way
+
+    def _newly_pulled(self, chart: Chart, off_land: Chart, part: FloatArray) -> list[Position]:
+        """Return a stretch of three positions or more after string pulling."""
         clear = ClearWater(off_land, self.shoals)
         lat, lon = part.T
         line = clear.moved(chart, clear.pulled(chart, (lat, lon)))
