@@ -11,6 +11,7 @@ import pytest
 import shapely
 
 from thalweg.chart import Chart
+from thalweg.chart.zones.traffic_lanes import LaneGroup
 from thalweg.chart.zones.traffic_schemes import (
     AGAINST_FACTOR,
     INSHORE,
@@ -36,6 +37,7 @@ from thalweg.sea import Sea
 from thalweg.ship import Ship
 
 SHIP = Ship.simple(13.0, 9.0, length_m=180.0)
+FERRY = Ship.simple(15.0, 5.5, length_m=115.0)
 DOVER = next(scheme for scheme in TRAFFIC_SCHEMES if scheme.name == "Dover Strait")
 ENDS = [Endpoint("A", 50.0, -1.0, 0.0), Endpoint("B", 52.0, 3.0, 0.0)]
 
@@ -103,6 +105,31 @@ def test_plans_round_ushant_and_along_the_frisian_islands_keep_off_the_inshore_z
         wrong = [note for note in found.notes if note.startswith((INSHORE_USED, AGAINST_TRAFFIC))]
         assert wrong == [], name
         assert any(name in note for note in found.notes if note.startswith("Keeps to starboard"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "goal", "most"),
+    [
+        ("Newhaven", "Dieppe", 68.0),  # a ferry crosses both lanes; 79 round the end of the scheme
+        ("Weymouth", "St Peter Port", 92.0),  # 113 round Off Casquets
+        ("Amsterdam", "Harlingen", 93.0),  # a port behind the zone off Texel; 124 round it
+    ],
+)
+def test_ships_cross_lanes_and_inshore_zones_at_right_angles(start, goal, most):
+    found = plan(voyage(start, goal), ship=FERRY, sea=Sea.calm(), proof=0.0)
+    assert found.best.distance_nm < most
+    assert not any(note.startswith((INSHORE_USED, AGAINST_TRAFFIC)) for note in found.notes)
+
+
+@pytest.mark.parametrize(("off", "against"), [(0, 1), (65, 1), (75, 0), (90, 0), (115, 1)])
+def test_an_inshore_zone_is_crossed_and_not_followed(off, against):
+    (zone,) = (one for one in FINISTERRE.lanes[:2] if "inshore" in one.name)
+    group = LaneGroup.of([zone])
+    (x, y), course = zone.shape.centroid.coords[0], math.radians(zone.direction + off)
+    dy, dx = 0.02 * math.cos(course), 0.02 * math.sin(course) / math.cos(math.radians(y))
+    ends = (np.array([v]) for v in (y - dy, x - dx, y + dy, x + dx))
+    assert (group.excess(*ends)[0] > 0.0) == bool(against)
 
 
 def test_light_vessels_of_the_dover_strait_lie_in_the_separation_zone():
@@ -189,7 +216,10 @@ def test_a_detour_by_a_scheme_is_stated(past_finisterre):
     chart, network = past_finisterre
     (note,) = lane_detour_notes(chart, [network])
     assert note.startswith("Keeping out of the inshore traffic zone of Off Finisterre")
-    assert "Rule 10 requires ships to keep out." in note and "need not" not in note
+    assert (
+        "Rule 10 requires ships to keep out, and to cross lanes at right angles." in note
+        and "need not" not in note
+    )
     assert "To compare only, plan with --ignore-lanes" in note and "Rule 10 (d)" in note
     miles = float(note.split(" about ")[1].split(" nm")[0])
     assert 4.0 < miles < 30.0
@@ -271,7 +301,7 @@ def test_a_route_on_the_edge_of_a_lane_is_stated_the_same_after_rounding(inside_
     assert any("Runs against" in note for note in lane_notes(chart, route)) == against
 
 
-@pytest.mark.parametrize(("off", "against"), [(99.0, False), (101.0, False), (106.0, True)])
+@pytest.mark.parametrize(("off", "against"), [(109.0, False), (111.0, False), (116.0, True)])
 def test_a_crossing_is_stated_the_same_after_rounding(off, against):
     lane = replace(FINISTERRE.lanes[0], direction=0.0)
     chart = SimpleNamespace(zones=Zones(lanes=(lane,)))

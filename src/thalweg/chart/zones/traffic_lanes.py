@@ -46,6 +46,8 @@ class TrafficLane:
     direction : Direction of the traffic [deg], clockwise from north.
     tolerance : Courses that differ from it by more than this are against the lane [deg].
     factor : What a mile against the lane counts; inf: forbidden.
+    crossing : Courses that differ from a right angle to it by no more than this cross the lane, and
+        are not against it whatever the tolerance [deg].
     """
 
     name: str
@@ -53,6 +55,7 @@ class TrafficLane:
     direction: float
     tolerance: float = DEFAULT_TOLERANCE
     factor: float = np.inf
+    crossing: float = 0.0
 
     @classmethod
     def of_feature(cls, shape: Any, properties: Mapping[str, Any]) -> TrafficLane:
@@ -145,6 +148,7 @@ class LaneGroup:
                     lane,
                     shape=_inside_of(lane.shape),
                     tolerance=lane.tolerance + (_MORE_COURSES if lane.tolerance > 0.0 else 0.0),
+                    crossing=lane.crossing + (_MORE_COURSES if lane.crossing > 0.0 else 0.0),
                 )
                 for lane in self.lanes
             ]
@@ -180,10 +184,14 @@ class LaneGroup:
 
     @cached_property
     def _rules(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Direction and tolerance of each lane [deg], and what a mile against it counts more."""
-        rules = [(one.direction, one.tolerance, one.factor) for one in self.lanes]
-        direction, tolerance, factor = np.array(rules, float).reshape(-1, 3).T
-        return direction, tolerance, np.minimum(factor, FORBIDDEN_FACTOR) - 1.0
+        """Direction and tolerances of each lane [deg], and what a mile against it counts more.
+
+        The tolerances are from its direction, and from a right angle to it; (L,), (2, L), (L,).
+        """
+        rules = [(one.direction, one.tolerance, one.crossing, one.factor) for one in self.lanes]
+        direction, tolerance, crossing, factor = np.array(rules, float).reshape(-1, 4).T
+        excess = np.minimum(factor, FORBIDDEN_FACTOR) - 1.0
+        return direction, np.stack([tolerance, crossing]), excess
 
     def _sum(self, met: LaneMeetings, against: BoolArray, count: int) -> FloatArray:
         _, _, excess = self._rules
@@ -266,9 +274,9 @@ class LaneGroup:
 
     def _is_against(self, course: FloatArray, lane: NDArray[np.int64]) -> BoolArray:
         """Return which courses [rad] are against lanes."""
-        direction, tolerance, _ = self._rules
+        direction, (tolerance, crossing), _ = self._rules
         off = np.abs((np.degrees(course) - direction[lane] + 180.0) % 360.0 - 180.0)
-        return np.asarray(off > tolerance[lane])
+        return np.asarray((off > tolerance[lane]) & (np.abs(off - 90.0) >= crossing[lane]))
 
     def _may_meet(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray

@@ -5,7 +5,8 @@ port (the general direction of traffic of all schemes in the table; Rule 10 (b) 
 Regulations, 1972). The lines are rounded to about half a mile and are not charted: they decide on
 which side of a strait a plan passes, not where the lanes are. Beyond the lane on a landward side
 lies the inshore traffic zone, which ships of 20 m and more do not use unless their port is there
-(Rule 10 (d)); voyages from, to or by a place inside it may use all of it.
+(Rule 10 (d)); voyages from, to or by a place inside it may use all of it. Ships cross lanes, and
+the zones beside them, on courses of about a right angle to the traffic (Rule 10 (c)).
 Lanes among the zones of a user (`thalweg.chart.zones.traffic_lanes`) take their
 place. Schemes that are not in the table are not known.
 """
@@ -36,7 +37,9 @@ INSHORE: Final = "inshore traffic zone"
 SMALL: Final = 20.0  #: length [m] below which ships may use inshore traffic zones
 _NEAR_PORT: Final = 30.0 * NAUTICAL_MILE  # ends so near a port behind an inshore zone go to it
 _CLEAR: Final = 0.25  # of the width of a lane that plans keep off the separation zone
-_ANY_COURSE: Final = -1.0  # tolerance of an area in which every course is against
+_ANY_COURSE: Final = -1.0  # tolerance of an area in which only crossing is not against
+#: From a right angle to the traffic, at which ships cross lanes and inshore traffic zones [deg].
+_CROSSING: Final = 20.0
 _LONGEST_DETOUR: Final = 4.0  # times the geodesic: farther schemes are left out
 _LEAST_DETOUR: Final = 600.0 * NAUTICAL_MILE
 _DEGREE: Final = 60.0 * NAUTICAL_MILE  # of latitude [m], to a third of a percent
@@ -120,12 +123,16 @@ class TrafficScheme:
             for k, heading in enumerate((course + turn) % 360.0):
                 name = f"{self.name}, {_POINTS[round(heading / 45.0) % 8]}-bound"
                 shape = self._part(k, -sign * inner, sign * edge)
-                lane = TrafficLane(name, shape, float(heading), factor=AGAINST_FACTOR)
+                lane = TrafficLane(
+                    name, shape, float(heading), factor=AGAINST_FACTOR, crossing=_CROSSING
+                )
                 lanes.append(("", lane))
                 if edge < reach:
                     shape = self._part(k, sign * edge, sign * reach)
                     name = f"{self.name}, {INSHORE}"
-                    zone = TrafficLane(name, shape, 0.0, _ANY_COURSE, AGAINST_FACTOR)
+                    zone = TrafficLane(
+                        name, shape, float(heading), _ANY_COURSE, AGAINST_FACTOR, _CROSSING
+                    )
                     lanes.append((side, zone))
         return tuple(lanes)
 

@@ -340,6 +340,7 @@ class Zones:
             + [f"no waiting {shape.wkb_hex}" for shape in self.no_waiting]
             + [
                 f"lane {lane.shape.wkb_hex} {lane.direction} {lane.tolerance} {lane.factor}"
+                f"{lane.crossing or ''}"
                 for lane in self.lanes
             ]
             + [one.text() for one in (self.shoals, self.closed_shoals) if one is not None]

@@ -8,7 +8,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import Position, distance, line_length
+from thalweg.core.geodesy import Position, distance, format_position, line_length
 from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import (
@@ -30,6 +30,7 @@ from thalweg.sea import Mesh, Sea
 #: Voyages of at least this distance [m] with a route longer than this multiple of it are searched
 #: in a corridor around the path over the globe network.
 _LONG_DISTANCE, _DETOUR_RATIO = 1500.0 * NAUTICAL_MILE, 1.3
+_SAME_PLACE = 10.0  # [m]
 _SURE = 1.05  # over this multiple of a length on the globe network, a route is longer than it
 
 
@@ -54,6 +55,7 @@ def build_network(
                 field="network",
             )
         check_network(network)
+        _check_ends(network, places)
         return network
     model = sea.mesh() if choice.network in ("auto", "mesh") else None
     if choice.network == "mesh" or (model is not None and _inside_mesh_extent(model, places)):
@@ -67,6 +69,22 @@ def build_network(
             numbering=choice.section,
         )  # fmt: skip
     return lattice_between(chart, *places, spacing=choice.spacing)
+
+
+def _check_ends(network: Network, places: tuple[Position, Position]) -> None:
+    """Refuse a network of the user that does not begin and end at the places of the voyage."""
+    meta = network.meta
+    for what, node, place in zip(("start", "goal"), (meta.start, meta.goal), places):
+        given = None if node < 0 else (float(network.lat[node]), float(network.lon[node]))
+        if given is None or float(distance(*given, *place)) > _SAME_PLACE:
+            where = "none" if given is None else format_position(*given)
+            raise InputError(
+                f"The network of the builder has another {what} than the voyage: {where}.",
+                f"It is called with {format_position(*place)}, where its {what} must be.",
+                "Return a network whose meta.start and meta.goal are nodes at these places "
+                "(thalweg.network.with_endpoints joins them to a network).",
+                field="network",
+            )
 
 
 def lattice_between(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -31,13 +32,16 @@ _ROUNDS = 2  # choices of blocks, each at the times of passage of the one before
 
 
 def in_speed_blocks(
-    trade_off: TradeOffContext, scored: list[RefereedCandidate]
+    trade_off: TradeOffContext,
+    scored: list[RefereedCandidate],
+    rivals: Sequence[RefereedCandidate] = (),
 ) -> list[RefereedCandidate]:
     """Return routes whose speed settings last for the requested duration, scored by the referee.
 
     Parameters
     ----------
     trade_off : Its voyage asks for the least duration of a block (`Voyage.least_speed_block_h`).
+    rivals : Other routes that may be the answer, at one speed.
 
     Returns
     -------
@@ -54,7 +58,7 @@ def in_speed_blocks(
     around = evaluator_around_routes(trade_off, [item.route for item in scored])
     evaluator, screen = CostEvaluator(around, 0.0), WaitScreen(around)
     found = [_blocked(trade_off, item, block_duration, evaluator, screen) for item in scored]
-    _note_costs(trade_off, scored, [ways[0] for ways in found])
+    _note_costs(trade_off, scored, [ways[0] for ways in found], rivals)
     return [one for ways in found for one in ways]
 
 
@@ -169,13 +173,23 @@ def _with_settings(track: Track, setting: NDArray[np.int64]) -> Track:
 
 
 def _note_costs(
-    trade_off: TradeOffContext, before: list[RefereedCandidate], after: list[RefereedCandidate]
+    trade_off: TradeOffContext,
+    before: list[RefereedCandidate],
+    after: list[RefereedCandidate],
+    rivals: Sequence[RefereedCandidate],
 ) -> None:
-    """Note what the blocks cost against speeds that change at will, arriving no later."""
+    """Note what the blocks cost against speeds that change at will, arriving no later.
+
+    For a plan of the least value that is what they cost the route of that value alone.
+    """
     free = sorted((one.route.time_h, one.value) for one in before)
     time, value = (np.array(column) for column in zip(*free))
     value = np.minimum.accumulate(value)
     changed = [(old, new) for old, new in zip(before, after) if new is not old]
+    voyage = trade_off.context.voyage
+    if voyage.objective == trade_off.objective.name and not voyage.at_most:
+        answer = min((*after, *rivals), key=lambda one: one.value)
+        changed = [(old, new) for old, new in changed if new is answer]
     kept = sum(_has_short_blocks(trade_off, one.route) for one in after)
     if not changed and not kept:
         return

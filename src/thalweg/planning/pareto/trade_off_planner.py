@@ -306,7 +306,7 @@ def _ordered(
     steady = [one for one in scored if one.candidate.stage == "one wait"]
     steady += two_speeds_after_wait(trade_off, steady)
     others = [one for one in scored if one.candidate.stage != "one wait"]
-    blocked = in_speed_blocks(trade_off, non_dominated_candidates(others)) if others else []
+    blocked = in_speed_blocks(trade_off, non_dominated_candidates(others), steady) if others else []
     kept = non_dominated_candidates([*blocked, *steady])
     if any(np.any(one.route.track.wait[1:]) for one in kept):
         screen = WaitScreen(evaluator_around_routes(trade_off, [one.route for one in kept]))

@@ -131,7 +131,8 @@ def lane_detour_notes(
     return [
         f"{LANE_DETOUR} {_listed(names)} makes the shortest way about "
         f"{longer / NAUTICAL_MILE:.0f} nm ({100.0 * longer / free:.0f} %) longer on the network of "
-        "the search: Rule 10 requires ships to keep out. An inshore traffic zone is open to ships "
+        "the search: Rule 10 requires ships to keep out, and to cross lanes at right angles. An "
+        "inshore traffic zone is open to ships "
         "under 20 m and to voyages from or to a place inside it (Rule 10 (d)). To "
         "compare only, plan with --ignore-lanes; do not sail that route where the chart has the "
         "scheme."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -21,6 +21,7 @@ _LONGEST_INTERVAL: Final = 1800.0  # between two points, or half the time step o
 _PARTS: Final = 8  # of an interval in which a limit may be exceeded between two points
 _ROUNDS: Final = 3
 _MOST_DIVIDED: Final = 500  # intervals in a round
+_CLEAR: Final = 0.01  # of the least depth of a leg [m]
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,8 @@ def checked_points(
     """Return closely spaced points where limits are checked.
 
     Between two points at which all limits are kept, and beside which the sea changes so fast that
-    one may be exceeded between them, further points are looked at.
+    one may be exceeded between them, further points are looked at. Likewise where the depth may be
+    less than the least of the leg: a sill of one row of the data is narrower than their spacing.
 
     Parameters
     ----------
@@ -94,14 +96,22 @@ def checked_points(
         if not len(longer[0]):
             break
         found = found.joined(looked_at(*longer))
-    for _ in range(_ROUNDS):
-        first = _doubtful_intervals(sailed, found, min_ukc)
-        if not len(first):
-            break
-        begin, end = found.points.along[first], found.points.along[first + 1]
-        shares = np.arange(1, _PARTS) / _PARTS
-        along = (begin[:, None] + (end - begin)[:, None] * shares).ravel()
-        found = found.joined(looked_at(np.repeat(found.points.leg[first], _PARTS - 1), along))
+
+    def near_limits(checked: CheckedPoints) -> list[FloatArray]:
+        return limit_excesses(world, checked.sampled, checked.depth, min_ukc)
+
+    def near_least_depth(checked: CheckedPoints) -> list[FloatArray]:
+        return [_below_least_depth(checked)] if world.has_depth else []
+
+    for excesses_of, clear in ((near_limits, 0.0), (near_least_depth, _CLEAR)):
+        for _ in range(_ROUNDS):
+            first = _doubtful_intervals(found, excesses_of(found), clear)
+            if not len(first):
+                break
+            begin, end = found.points.along[first], found.points.along[first + 1]
+            shares = np.arange(1, _PARTS) / _PARTS
+            along = (begin[:, None] + (end - begin)[:, None] * shares).ravel()
+            found = found.joined(looked_at(np.repeat(found.points.leg[first], _PARTS - 1), along))
     return found
 
 
@@ -137,17 +147,28 @@ def _between_points(checked: CheckedPoints, longest: float) -> tuple[IntArray, F
     return leg[at], along[at] + share * (along[at + 1] - along[at])
 
 
-def _doubtful_intervals(sailed: SailedTrack, checked: CheckedPoints, min_ukc: float) -> IntArray:
+def _below_least_depth(checked: CheckedPoints) -> FloatArray:
+    """Return the least depth found on the leg of each point, less the depth there [m]."""
+    leg, passed = checked.points.leg, np.isfinite(checked.moments)
+    depth = np.where(np.isfinite(checked.depth) & passed, checked.depth, np.nan)
+    least = np.full(int(leg.max(initial=-1)) + 1, np.nan)
+    np.fmin.at(least, leg, depth)
+    return np.asarray(least[leg] - depth)
+
+
+def _doubtful_intervals(
+    checked: CheckedPoints, excesses: Sequence[FloatArray], clear: float
+) -> IntArray:
     """Return the intervals, by their first points, in which a limit may be exceeded.
 
-    Both ends keep it, and the sea would exceed it if it changed once more as in this interval or in
-    the one before or after.
+    Both ends keep it, and the sea would exceed it by more than ``clear`` if it changed once more as
+    in this interval or in the one before or after.
     """
     points = checked.points
     between = (np.diff(points.leg) == 0) & np.isfinite(np.diff(checked.moments))
     smooth = between & (points.charted[1:] == points.charted[:-1])  # each is the least of a piece
     doubt = np.full(len(between), -np.inf)
-    for excess in limit_excesses(sailed.world, checked.sampled, checked.depth, min_ukc):
+    for excess in excesses:
         with np.errstate(invalid="ignore"):  # without a bound of the depth
             change = np.where(smooth, np.abs(np.diff(excess)), 0.0)
         beside = np.fmax(np.append(0.0, change[:-1]), np.append(change[1:], 0.0))
@@ -155,4 +176,4 @@ def _doubtful_intervals(sailed: SailedTrack, checked: CheckedPoints, min_ukc: fl
         known = between & (high <= 0.0) & (change > 0.0)
         doubt[known] = np.maximum(doubt[known], high[known] + change[known])
     order = np.argsort(-doubt, kind="stable")[:_MOST_DIVIDED]
-    return np.sort(order[doubt[order] > 0.0])
+    return np.sort(order[doubt[order] > clear])
