@@ -67,6 +67,38 @@ def simulator(asked):
     return Simulator(asked, environment, network)
 
 
+def narrow_sill(path):
+    """Write a sea 20 m deep with a sill of 6.5 m in one row of the data, and a tide of M2."""
+    lat = 51.62 + 0.0025 * np.arange(55)
+    depth = np.where(np.arange(55) == 32, 6.5, 20.0)  # at 51.70 N
+    hours = np.arange(0.0, 24.0 * 4.0, 1.0 / 6.0)
+    level = 1.5 * np.cos(2.0 * np.pi * hours / 12.4206)
+    axes = ("time", "lat", "lon")
+    bed = {"standard_name": "sea_floor_depth_below_geoid", "units": "m"}
+    tide = {"standard_name": "sea_surface_height_above_geoid", "units": "m"}
+    data = {
+        "h": (axes[1:], np.repeat(depth[:, None], 3, axis=1), bed),
+        "z": (axes, np.broadcast_to(level[:, None, None], (len(hours), 55, 3)), tide),
+    }
+    times = np.datetime64("2026-05-01", "ns") + (hours * 3600e9).astype("timedelta64[ns]")
+    coords = {"time": times, "lat": lat, "lon": [3.55, 3.6, 3.65]}
+    xr.Dataset(data, coords).to_netcdf(path)
+
+
+def test_over_a_narrow_sill_loads_are_those_that_the_referee_lets_pass(tmp_path):
+    """The search passes the sill minutes later than a ship can: a load of 0.7 waited 6 hours."""
+    narrow_sill(tmp_path / "narrow.nc")
+    asked = project(
+        tmp_path / "narrow.nc", load=[51.75, 3.6], unload=[51.65, 3.6], spacing_m=None,
+        load_factors=[0.6, 0.7, 1.0], unloading={"rate_m3_h": 7200},
+    )  # fmt: skip
+    cycles = simulator(asked)
+    found = cycles.run()
+    assert [cycle.load_factor for cycle in found] == [1.0, 0.6, 0.6]
+    assert (found[1].end - asked.start) / 3600.0 == pytest.approx(4.23, abs=0.05)
+    assert cycles.run((1.0, 0.7))[1].end > found[1].end + 5.0 * 3600.0
+
+
 def test_no_sequence_of_loads_ends_before_that_of_the_whole_project(tmp_path):
     gully(tmp_path / "sill.nc")
     cycles = simulator(project(tmp_path / "sill.nc"))

@@ -94,21 +94,33 @@ class Simulator:
         chosen = project.work.load_factors if factors is None else factors
         lighter = {x for x in project.work.load_factors if x < max(chosen)} - set(chosen)
 
-        def round_trips(loads: Iterable[float]) -> list[RoundTrip]:
-            return [
-                RoundTrip(x, self.leg_planner.profile_search(x, outward=True), replace(back))
-                for x in sorted(loads)
-                if x > 0.0
-            ]
-
-        self.both = round_trips(set(chosen))
-        self.of_last_cycle = round_trips(lighter)
+        self.both = self._round_trips(set(chosen), back)
+        self.of_last_cycle = self._round_trips(lighter, back)
         sites, period = environment.sites, environment.period
         self.at_load, self.at_unload = (
             WorkWindows.at_site(place, period, ship=environment.ship, sea=environment.sea)
             for place in (sites.load, sites.unload)
         )
         self.workers = max(1, min(os.cpu_count() or 1, len(self.both)))
+        #: When cycles ended that were sailed, by start and load [s since 1970-01-01T00:00Z].
+        self.sailed: dict[tuple[float, float], float] = {}
+
+    def _round_trips(
+        self, loads: Iterable[float], back: ProfileSearch, step: int = 0
+    ) -> list[RoundTrip]:
+        search = self.leg_planner.profile_search
+        return [
+            RoundTrip(x, search(x, outward=True, step=step), replace(back))
+            for x in sorted(loads)
+            if x > 0.0
+        ]
+
+    def verified_round_trips(self) -> dict[float, RoundTrip]:
+        """Return the searches of all loads with the limits that sailed legs needed to keep all."""
+        step = self.leg_planner.step_needed
+        loads = [one.load_factor for one in (*self.both, *self.of_last_cycle)]
+        back = self.leg_planner.profile_search(0.0, outward=False, step=step)
+        return {one.load_factor: one for one in self._round_trips(loads, back, step)}
 
     @property
     def possible(self) -> list[float]:
@@ -135,8 +147,7 @@ class Simulator:
         with ThreadPoolExecutor(self.workers) as pool:
             while left > _MIN_VOLUME_SHARE * work.hopper:
                 given = loads[len(cycles)] if len(cycles) < len(loads) else None
-                choice = self._choose(pool, time, left, given)
-                cycle = None if choice is None else self._sail(len(cycles) + 1, time, choice)
+                cycle = self._best_cycle(pool, len(cycles) + 1, time, left, given)
                 if cycle is None:
                     raise self._too_short(work.volume - left, time)
                 cycles.append(cycle)
@@ -146,6 +157,34 @@ class Simulator:
                 if len(cycles) % 10 == 0:
                     self.report(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")
         return cycles
+
+    def _best_cycle(
+        self, pool: ThreadPoolExecutor, number: int, time: float, left: float, given: float | None
+    ) -> DredgingCycle | None:
+        """Return the cycle of the highest production as evaluated by the referee.
+
+        A search samples the water and may pass a narrow sill later than the ship can. Where a cycle
+        ends later than its search, the other loads that produce more by theirs are sailed too.
+        """
+        best: DredgingCycle | None = None
+        options = self.options(left)
+        options = [o for o in options if o.both.load_factor == given] or options
+        while True:
+            least = 0.0 if best is None else best.volume / (best.end - time)
+            choice = self._choose(pool, time, options, least)
+            if choice is None:
+                return best
+            cycle = self._sail(number, time, choice)
+            load_factor = choice.option.both.load_factor
+            self.sailed[time, load_factor] = math.inf if cycle is None else cycle.end
+            if cycle is not None and cycle.volume / (cycle.end - time) > least:
+                best = cycle
+            late = (
+                cycle is None or cycle.end > time + choice.option.volume / choice.production + 1.0
+            )
+            if not late:
+                return best
+            options = [o for o in options if o is not choice.option]
 
     def options(self, left: float) -> list[LoadOption]:
         """Return the loads for the next cycle, by descending upper bound of production."""
@@ -165,14 +204,12 @@ class Simulator:
         return sorted(options, key=lambda o: -o.bound)
 
     def _choose(
-        self, pool: ThreadPoolExecutor, time: float, left: float, given: float | None = None
+        self, pool: ThreadPoolExecutor, time: float, options: list[LoadOption], least: float
     ) -> LoadChoice | None:
-        """Return the load with the highest production of its whole cycle, or a given load."""
+        """Return the load of highest production by its searches; None for none above ``least``."""
         best: LoadChoice | None = None
-        options = self.options(left)
-        options = [o for o in options if o.both.load_factor == given] or options
         for lot in _batches(options, self.workers):
-            least = 0.0 if best is None else best.production
+            least = least if best is None else best.production
             live = [option for option in lot if option.bound > least]
             count = len(live)
             for choice in pool.map(self.evaluate_option, [time] * count, live, [least] * count):

@@ -16,10 +16,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from thalweg.operations.dredging.cycle_records import DredgingCycle
     from thalweg.operations.dredging.cycle_simulation import LoadOption, Simulator
 
 MOST_SEARCHES: Final = 4000  #: cycles searched for the loads of a project, at most
 _STRIDES: Final = (1, 2, 5)  # of the loads: fewer for large projects
+_ROUNDS: Final = 2  # in which loads are chosen
 _DIGITS: Final = 6  # of shares of a hopper; volumes that agree to so many are one
 
 
@@ -32,10 +34,41 @@ class _Moved:
     loads: tuple[float, ...] = field(compare=False, default=())
 
 
+def cycles_of_least_time(
+    simulator: Simulator,
+    cycles: list[DredgingCycle],
+    *,
+    report: Callable[[str], None] = lambda text: None,
+) -> list[DredgingCycle]:
+    """Return the cycles with the loads that end a project first.
+
+    Loads whose cycles end later than by their searches are chosen once more, knowing that.
+
+    Parameters
+    ----------
+    simulator : After its run.
+    cycles : Of that run; they are returned where no others end earlier.
+    """
+    best = cycles
+    for _ in range(_ROUNDS):
+        loads = loads_of_least_time(simulator, latest=best[-1].end, report=report)
+        if not loads:
+            break
+        together = simulator.run(loads)
+        if together[-1].end >= best[-1].end:
+            continue
+        best = together
+        if tuple(cycle.load_factor for cycle in together) == loads:
+            break
+    return best
+
+
 def loads_of_least_time(
     simulator: Simulator, *, latest: float, report: Callable[[str], None] = lambda text: None
 ) -> tuple[float, ...] | None:
     """Return the loads of all cycles with which a project ends first, by the searches of its legs.
+
+    Cycles that were sailed before end when they did, which may be later than by their searches.
 
     Parameters
     ----------
@@ -62,6 +95,7 @@ def loads_of_least_time(
         return None
     fastest = max((o.bound for o in simulator.options(work.volume)), default=math.inf)
     report(f"{len(chosen)} loads for the whole project")
+    verified = simulator.verified_round_trips()
     best: dict[float, _Moved] = {0.0: _Moved(0.0, simulator.project.start)}
     queue = [0.0]
     with ThreadPoolExecutor(simulator.workers) as pool:
@@ -73,7 +107,7 @@ def loads_of_least_time(
             if state.time + left / fastest >= latest or _is_dominated(state, best):
                 continue
             options = [
-                option
+                option._replace(both=verified[option.both.load_factor])
                 for option in simulator.options(left)
                 if option.both.load_factor in chosen or option.volume >= left
             ]
@@ -92,6 +126,9 @@ def _end_of(simulator: Simulator, start: float) -> Callable[[LoadOption], float]
     """Return when a cycle from a time on ends with a load [s]; inf without a way."""
 
     def end(option: LoadOption) -> float:
+        sailed = simulator.sailed.get((start, option.both.load_factor))
+        if sailed is not None:
+            return sailed
         choice = simulator.evaluate_option(start, option, 0.0)
         return math.inf if choice is None else start + option.volume / choice.production
 

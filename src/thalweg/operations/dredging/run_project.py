@@ -17,7 +17,7 @@ from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.operations.dredging.cycle_records import DredgingCycle
 from thalweg.operations.dredging.cycle_simulation import CycleCallback, Simulator
-from thalweg.operations.dredging.load_sequence import loads_of_least_time
+from thalweg.operations.dredging.load_sequence import cycles_of_least_time
 from thalweg.operations.dredging.project import BEST_LOAD_FACTOR, Project
 from thalweg.operations.dredging.project_environment import (
     LINE,
@@ -206,8 +206,7 @@ def _simulate_run(
     cycles = simulator.run()
     together_counts = _waiting_share(cycles) > _MUCH_WAITING or len(cycles) <= _FEW_CYCLES
     if len(factors) > 1 and together_counts:
-        loads = loads_of_least_time(simulator, latest=cycles[-1].end, report=watch.report)
-        together = simulator.run(loads) if loads else cycles
+        together = cycles_of_least_time(simulator, cycles, report=watch.report)
         if together[-1].end < cycles[-1].end:
             hours = (cycles[-1].end - together[-1].end) / HOUR
             notes += (

@@ -34,6 +34,8 @@ class SiteLegPlanner:
         self.step = 0.5 * min(site_network.network.meta.spacing_m, LARGEST_STEP)
         self._loaded: dict[float, LoadedShip] = {}
         self._searches: dict[tuple[float, bool, int], ProfileSearch] = {}
+        #: The greatest step of `TIGHTENING` at which a leg was sailed that kept every limit.
+        self.step_needed = 0
 
     def loaded(self, load_factor: float) -> LoadedShip:
         """Return the ship at a load."""
@@ -84,6 +86,7 @@ class SiteLegPlanner:
                 route = self._evaluated_path(path, loaded)
                 best = route if best is None or route.feasible else best
                 if route.feasible:
+                    self.step_needed = max(self.step_needed, step)
                     break
             path = None
         if best is None or not math.isfinite(best.arrive):
