@@ -320,6 +320,21 @@ def test_a_negative_wave_height_is_refused_where_it_is_read():
     assert np.isnan(unknown.sample([name], 0.0, 50.0, 0.0)[name]).all()
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("eastward_sea_water_velocity", -100.0),
+        ("eastward_wind", 900.0),
+        ("sea_surface_wave_significant_height", 80.0),
+    ],
+)
+def test_values_that_no_sea_has_are_refused_from_functions_as_from_files(name, value):
+    other = name.replace("eastward", "northward")
+    functions = {other: lambda t, y, x: 0.0 * y, name: lambda t, y, x: value + 0.0 * y}
+    with pytest.raises(DatasetError, match=f"{name} returns {value:g} m.* are plausible"):
+        Sea.from_functions(functions).sample([name], 0.0, 50.0, 0.0)
+
+
 def test_a_negative_wind_speed_is_refused_and_turns_no_wind_round():
     sea = Sea.from_functions(
         {
