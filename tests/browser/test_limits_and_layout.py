@@ -205,3 +205,21 @@ def test_less_fuel_on_a_longer_voyage_is_no_saving(visit, planned, later_h):
     assert card.locator(".less").count() == (0 if later_h > 0.0 else 1)
     assert ("which arrives 20 h 00 min earlier" in card.inner_text()) == (later_h > 0.0)
     visit.picture(f"weather-ignored-{later_h:.0f}")
+
+
+def test_a_front_states_what_it_saves_in_the_same_time(visit):
+    page = visit.open()
+    script = """async ([notes, feasible]) => {
+      const { WeatherIgnored } = await import("/static/app/result/weather_ignored.js");
+      const row = { speed_kn: 12, time_h: 60, saved: 3.24, saved_percent: 4.1, feasible: true };
+      const rows = [{ ...row, time_h: 40, saved: null }, row, { ...row, time_h: 90, saved: 9 }];
+      const plan = { notes, comparison: rows, front: { criterion: "fuel", unit: "t" } };
+      const route = { time_h: 62, feasible }, blind = { time_h: 40, feasible: true };
+      return new WeatherIgnored(plan, route, blind).card()?.textContent || ""; }"""
+    text = page.evaluate(script, [[], True])
+    assert "12.0 kn takes 2 d 12 h 00 min" in text and "−3.2 t of fuel (4.1 %)" in text
+    none = "No weather-blind route is feasible: waves. Savings over it are not stated."
+    assert "breaks a limit. Savings over it are not stated." in page.evaluate(
+        script, [[none], True]
+    )
+    assert page.evaluate(script, [[], False]) == ""  # the chosen route itself breaks a limit
