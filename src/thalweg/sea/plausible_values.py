@@ -80,23 +80,18 @@ def check_plausible(name: str, value: NDArray[Any], variables: list[str], source
     )
 
 
-def check_function_values(name: str, value: NDArray[Any]) -> None:
-    """Raise `DatasetError` if a function returns what no sea has, such as 100 m/s of current.
-
-    Depths are not checked: a large one often stands for deep water.
+def check_not_negative(name: str, value: NDArray[Any]) -> None:
+    """Raise `DatasetError` if a function returns a negative height, period or speed.
 
     Parameters
     ----------
     name : Standard name of what the function returns.
     value : What it returned [SI].
     """
-    known_as = nm.canonical_name(name)
-    if known_as not in PLAUSIBLE_RANGES or known_as == nm.BED_DEPTH:
+    if nm.canonical_name(name) not in NEVER_NEGATIVE:
         return
-    flat = np.ravel(value)
-    least = float(np.fmin.reduce(flat, initial=np.inf))
-    most = float(np.fmax.reduce(flat, initial=-np.inf))
-    if known_as in NEVER_NEGATIVE and least < -NEGATIVE_TOLERANCE:
+    least = float(np.fmin.reduce(np.ravel(value), initial=np.inf))
+    if least < -NEGATIVE_TOLERANCE:
         raise DatasetError(
             f"The function of {name} returns {least:g}.",
             "It is never negative; NaN stands for a value that is not known.",
@@ -104,20 +99,6 @@ def check_function_values(name: str, value: NDArray[Any]) -> None:
             variable=name,
             value=least,
         )
-    low, high = PLAUSIBLE_RANGES[known_as]
-    slack = RANGE_TOLERANCE * (high - low)
-    if (low - slack <= least and most <= high + slack) or least > most:
-        return
-    worst = most if most > high + slack else least
-    unit = nm.CANONICAL_UNITS.get(known_as, "")
-    raise DatasetError(
-        f"The function of {name} returns {worst:g} {unit}".rstrip() + ".",
-        f"Values between {low:g} and {high:g} {unit}".rstrip()
-        + " are plausible; NaN stands for a value that is not known.",
-        "Correct the function: it returns SI units.",
-        variable=name,
-        value=worst,
-    )
 
 
 def without_packing_error(name: str, value: NDArray[Any]) -> NDArray[Any]:

@@ -18,7 +18,7 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.layer import Samples, nan_pairs
-from thalweg.sea.plausible_values import check_function_values
+from thalweg.sea.plausible_values import check_not_negative
 from thalweg.sea.triangle_mesh import Mesh
 
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
@@ -361,7 +361,7 @@ def _checked(name: str, function: FieldFunction) -> FieldFunction:
                 "Write it with NumPy operations on time, lat and lon.",
                 field=name,
             ) from None
-        check_function_values(name, value)
+        check_not_negative(name, value)
         return value if value.flags.writeable else value.copy()
 
     return call
