@@ -223,3 +223,19 @@ def test_a_front_states_what_it_saves_in_the_same_time(visit):
         script, [[none], True]
     )
     assert page.evaluate(script, [[], False]) == ""  # the chosen route itself breaks a limit
+
+
+def test_one_speed_of_a_ship_is_no_range(visit):
+    def single(route):
+        answer = route.fetch()
+        sheet = answer.json()
+        for row in sheet["settings"]:
+            row["speed_kn"] = 10.0
+        route.fulfill(response=answer, json=sheet)
+
+    visit.page.route("**/api/v1/ships/handysize-bulker", single)
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    page.locator("#ship").select_option("handysize-bulker")
+    page.get_by_text("10.0 kn · draught").wait_for()
+    assert "10.0 to 10.0" not in page.locator("#panel").inner_text()
