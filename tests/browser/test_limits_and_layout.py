@@ -151,3 +151,91 @@ def test_members_of_a_forecast_that_break_a_limit_are_stated_first(visit, planne
     playwright_api.expect(card).to_contain_text("those of member 5")
     playwright_api.expect(card).to_contain_text("waves of up to 8.2 m")
     visit.picture("members")
+
+
+@pytest.mark.parametrize("width", [320, 390, 768, 1280])
+def test_the_header_fits_the_width_of_the_page(visit, planned, width):
+    visit.page.set_viewport_size({"width": width, "height": 844})
+    page = visit.open(f"#plan={planned}")
+    page.locator(".proof").wait_for()
+    ends = """[...document.querySelectorAll(".bar *")].filter((one) => one.offsetParent)
+      .map((one) => one.getBoundingClientRect().right)"""
+    assert max(page.evaluate(ends)) <= width
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate("document.body.scrollWidth") <= width
+    visit.picture(f"header-{width}")
+    page.get_by_role("button", name="Voyages", exact=True).click()
+    page.get_by_role("heading", name="Voyages").wait_for()
+
+
+def beside_of(page, planned, **changes):
+    """Let the page read another route that ignores the weather."""
+
+    def changed(route):
+        answer = route.fetch()
+        route.fulfill(response=answer, json=answer.json() | changes)
+
+    page.route(f"**/api/v1/plans/{planned}/beside.json", changed)
+
+
+def test_no_saving_is_shown_over_a_route_that_breaks_a_limit(visit, planned):
+    broken = [{"reason": "wave height above the limit", "lat": 47.1, "lon": -19.8}]
+    beside_of(visit.page, planned, feasible=False, violations=broken, fuel_t=500.0, time_h=99.0)
+    page = visit.open(f"#plan={planned}")
+    card = page.locator(".card", has=page.get_by_text("Weather ignored", exact=True))
+    playwright_api.expect(card).to_contain_text(
+        "breaks a limit: wave height above the limit. Savings over it are not stated."
+    )
+    assert page.locator(".cards .less, .cards .more").count() == 0
+    assert "against weather ignored" not in page.locator(".cards").inner_text()
+    visit.picture("weather-ignored-broken")
+
+
+@pytest.mark.parametrize("later_h", [20.0, -20.0])
+def test_less_fuel_on_a_longer_voyage_is_no_saving(visit, planned, later_h):
+    result = visit.service.http.get(f"/api/v1/plans/{planned}/result").json()
+    (route,) = result["routes"]
+    blind = {"time_h": 50.0 - later_h, "fuel_t": route["fuel_t"] + 80.0}
+    route["time_h"] = 50.0
+    visit.page.route(f"**/api/v1/plans/{planned}/result", lambda sent: sent.fulfill(json=result))
+    beside_of(visit.page, planned, feasible=True, violations=[], **blind)
+    page = visit.open(f"#plan={planned}")
+    card = page.locator(".card", has=page.get_by_text("Fuel", exact=True))
+    playwright_api.expect(card).to_contain_text("−80.0 t against weather ignored")
+    assert card.locator(".less").count() == (0 if later_h > 0.0 else 1)
+    assert ("which arrives 20 h 00 min earlier" in card.inner_text()) == (later_h > 0.0)
+    visit.picture(f"weather-ignored-{later_h:.0f}")
+
+
+def test_a_front_states_what_it_saves_in_the_same_time(visit):
+    page = visit.open()
+    script = """async ([notes, feasible]) => {
+      const { WeatherIgnored } = await import("/static/app/result/weather_ignored.js");
+      const row = { speed_kn: 12, time_h: 60, saved: 3.24, saved_percent: 4.1, feasible: true };
+      const rows = [{ ...row, time_h: 40, saved: null }, row, { ...row, time_h: 90, saved: 9 }];
+      const plan = { notes, comparison: rows, front: { criterion: "fuel", unit: "t" } };
+      const route = { time_h: 62, feasible }, blind = { time_h: 40, feasible: true };
+      return new WeatherIgnored(plan, route, blind).card()?.textContent || ""; }"""
+    text = page.evaluate(script, [[], True])
+    assert "12.0 kn takes 2 d 12 h 00 min" in text and "−3.2 t of fuel (4.1 %)" in text
+    none = "No weather-blind route is feasible: waves. Savings over it are not stated."
+    assert "breaks a limit. Savings over it are not stated." in page.evaluate(
+        script, [[none], True]
+    )
+    assert page.evaluate(script, [[], False]) == ""  # the chosen route itself breaks a limit
+
+
+def test_one_speed_of_a_ship_is_no_range(visit):
+    def single(route):
+        answer = route.fetch()
+        sheet = answer.json()
+        for row in sheet["settings"]:
+            row["speed_kn"] = 10.0
+        route.fulfill(response=answer, json=sheet)
+
+    visit.page.route("**/api/v1/ships/handysize-bulker", single)
+    page = visit.open()
+    page.wait_for_selector("#ship option", state="attached")
+    page.locator("#ship").select_option("handysize-bulker")
+    page.get_by_text("10.0 kn · draught").wait_for()
+    assert "10.0 to 10.0" not in page.locator("#panel").inner_text()

@@ -12,6 +12,7 @@ import openclsim.model as model
 import simpy
 from shapely.geometry import Point
 
+from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.time import parse_time
 from thalweg.operations.dredging.project_inputs import open_project, open_project_inputs
@@ -19,6 +20,7 @@ from thalweg.operations.dredging.project_parts import SiteNetworkOptions
 from thalweg.operations.examples.estuary import synthetic_estuary
 from thalweg.operations.openclsim.leg_planner import LegPlanner
 from thalweg.operations.openclsim.plugin import PlannedRouteMovable
+from thalweg.sea import Sea
 
 START = parse_time("2026-05-01T00:00Z")
 PARTS = (
@@ -198,3 +200,20 @@ def test_impossible_legs_are_reported(yard, leg_planner, estuary):
         leg_planner.sail(estuary.load, (52.9, 3.5), depart=START, load_factor=0.0)
     assert leg_planner._rounded(0.61) == 0.7  # never less than the actual draught
     assert leg_planner._rounded(0.6) == 0.6
+
+
+def test_a_place_outside_the_data_is_named_and_not_the_load(estuary, leg_planner):
+    deep = Sea.from_functions({"sea_floor_depth_below_geoid": lambda time, lat, lon: 30.0})
+    wide = LegPlanner.open(
+        ship=leg_planner.ship, sea=Sea.layered(estuary.sea, deep), start=START, days=1.0,
+        chart=Chart.open_water(51.5, 52.0, 3.0, 4.0), min_ukc=1.0,
+        network=SiteNetworkOptions(spacing=2000.0, rings=2),
+    )  # fmt: skip
+    outside = (51.85, 3.58)
+    with pytest.raises(NoRouteError, match=r"The destination .* is outside the data") as refused:
+        wide.sail(estuary.load, outside, depart=START, load_factor=0.0)
+    assert "Load less" not in str(refused.value)
+    with pytest.raises(
+        NoRouteError, match=r"The origin .* is outside the data: there is no current"
+    ):
+        wide.sail(outside, estuary.load, depart=START, load_factor=0.0)

@@ -13,6 +13,7 @@ from thalweg import Chart, Sea, Ship, Voyage
 from thalweg.chart.approaches import MAX_APPROACH_SPEED, PORT_APPROACHES
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.time import parse_time
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.planning.request.voyage_endpoints import (
     resolve_endpoint,
@@ -183,8 +184,10 @@ def test_a_front_along_a_river_has_one_point():
 def test_latest_arrival_counts_the_approaches():
     hours = planned("Rotterdam", "Hook of Holland").best.time_h
     late = np.datetime64("2024-01-01T00:00") + np.timedelta64(int(hours * 3600) - 300, "s")
-    with pytest.raises(NoRouteError, match="approaches take"):
+    with pytest.raises(NoRouteError, match="approaches take") as refused:
         planned("Rotterdam", "Hook of Holland", arrive_by=str(late))
+    earliest = parse_time(refused.value.details["earliest"])  # the web page offers it
+    assert earliest == pytest.approx(parse_time("2024-01-01T00:00") + hours * 3600.0, abs=1.0)
     with pytest.raises(NoRouteError, match="approaches"):
         planned(arrive_by="2024-01-01T02:00Z")
 

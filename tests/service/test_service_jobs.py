@@ -7,6 +7,7 @@ import os
 import signal
 import time
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -270,6 +271,20 @@ def test_a_stopped_front_keeps_the_faster_route_that_was_shown_first():
     assert (np.diff(found.front.values) < 0.0).all()
     assert len(found.to_dict()["front"]["points"]) == len(found.routes)
     assert job_work.with_faster_route(whole, whole.routes[1]) is whole  # not faster
+
+
+def test_the_route_beside_a_front_is_one_that_keeps_the_limits_if_there_is_one():
+    world = SimpleNamespace(sea=SimpleNamespace(members=0))
+    request = SimpleNamespace(seas=["storm"])
+    fast, slow = SimpleNamespace(feasible=False), SimpleNamespace(feasible=True)
+
+    def beside(*routes):
+        front = SimpleNamespace(comparison=SimpleNamespace(routes=routes))
+        return job_work._beside(SimpleNamespace(front=front), world, request, None)
+
+    assert beside(fast, slow) is slow
+    assert beside(fast) is fast  # the page says that it breaks a limit
+    assert beside() is None
 
 
 def test_a_front_is_sent_while_it_is_searched(client):

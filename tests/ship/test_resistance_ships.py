@@ -327,8 +327,8 @@ def test_the_ship_type_for_wind_follows_from_the_hull_and_is_reported():
     assert estimated(type="crude oil tanker") == "tanker_loaded"
     assert estimated(type="LNG carrier") == "lng_tanker"
     assert estimated(type="ro_pax") == estimated(type="Ro-Pax") == "ferry"
-    assert estimated() == estimated(type="banana") == "cargo_loaded"
-    unknown = _ship({"wind_type": None}, hull={"type": "banana"}).estimated
+    assert estimated() == estimated(type="harbour tug") == "cargo_loaded"
+    unknown = _ship({"wind_type": None}, hull={"type": "harbour tug"}).estimated
     assert any("names no known type" in str(one) for one in unknown)
     assert "models.wind_type" not in {e.key for e in _ship().estimated}
     named = [_ship({"wind": name, "wind_type": "tanker_laden"}) for name in ("ittc", "iso_15016")]

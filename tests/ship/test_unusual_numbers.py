@@ -5,6 +5,7 @@ import pytest
 from thalweg import InputError, Ship
 from thalweg.core.units import KNOT
 from thalweg.ship import library_names
+from thalweg.ship.methods.carbon_intensity import SHIP_TYPES
 from thalweg.ship.schema.ship_schema import ShipFile
 from thalweg.ship.schema.unusual_numbers import check_possible_numbers, unusual_numbers
 from thalweg.ship.ship_assumptions import stated_assumptions
@@ -152,3 +153,19 @@ def test_one_missing_particular_is_it_and_several_are_them():
         Ship.from_dict(given)
     with pytest.raises(InputError, match=r"Add them, or choose"):
         Ship.from_dict({**given, "models": {**given["models"], "wind": "blendermann_1994"}})
+
+
+@pytest.mark.parametrize("given", ["foo_ship", "banana"])
+def test_a_type_of_ship_that_nobody_knows_is_refused_with_the_known_ones(given):
+    data = {"name": "x", "speeds_kn": [12], "hull": {"draught_m": 6.0, "type": given}}
+    with pytest.raises(InputError, match=r"general_cargo_ship.*dredg") as refused:
+        Ship.from_dict(data)
+    assert given in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "given", [*SHIP_TYPES, "Crude Oil Tanker", "research vessel", "Ro-Pax", "hopper dredger"]
+)
+def test_types_of_the_cii_and_words_for_others_are_taken(given):
+    data = {"name": "x", "speeds_kn": [12], "hull": {"draught_m": 6.0, "type": given}}
+    assert Ship.from_dict(data).file.hull.type == given

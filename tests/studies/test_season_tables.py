@@ -61,6 +61,19 @@ def test_choices_and_their_persistence():
     assert choices_by_axis(inshore.assign(objective="time"), usable[:5], ["way"]).empty
 
 
+def test_a_departure_is_divided_among_values_that_are_equally_good():
+    times = departures(4)
+    first = pd.DataFrame({"depart": times, "way": "a", "time_h": [8.0, 8.0, 7.0, 8.0]})
+    second = pd.DataFrame({"depart": times, "way": "b", "time_h": [8.0, 8.0 + 1e-9, 8.0, 7.0]})
+    third = pd.DataFrame({"depart": times, "way": "c", "time_h": [9.0, 9.0, 9.0, 9.0]})
+    frame = pd.concat([second, third, first], ignore_index=True).assign(objective="time", month=1)
+    table = choices_by_axis(frame, frame["time_h"] > 0.0, ["way"]).set_index("value")
+    assert table["chosen"].to_dict() == {"a": 0.5, "b": 0.5}  # two halves and one whole each
+    assert table["tied"].to_dict() == {"a": 0.5, "b": 0.5}
+    assert table["departures"].tolist() == [4, 4]
+    assert table["persistence"].tolist() == pytest.approx([1 / 3, 1 / 3])  # ab ab a b
+
+
 def test_heat_map_of_month_and_hour(tmp_path):
     times = departures(120)
     frame = pd.DataFrame({"depart": times, "time_h": np.tile([10.0, 12.0], 60)})

@@ -26,8 +26,9 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
 from thalweg.studies import Study, row_runner, run_study, study_rows, study_run, summarise_study
-from thalweg.studies.row_runner import run_rows, ship_of_request
+from thalweg.studies.row_runner import UNREAD, run_rows, ship_of_request
 from thalweg.studies.study_axes import axis_values
+from thalweg.studies.study_notes import study_notes
 from thalweg.studies.study_parts import read_parts
 from thalweg.studies.study_run import has_route
 from thalweg.studies.study_summary import median_interval
@@ -101,6 +102,51 @@ def test_the_exact_method_is_run_once_over_seeds():
     assert draws.size == len(draws.rows()) == 3
 
 
+def test_methods_are_compared_with_the_same_blocks_of_speed():
+    voyage = {"start": "A", "goal": "B", "objective": "front"}
+
+    def blocks(axes, **entries):
+        rows = Study("methods", {"voyage": voyage | entries}, axes).rows()
+        return [row.request["voyage"].get("speed_block_h") for row in rows]
+
+    assert blocks({"method": ["exact", "nsga2"]}) == [0, 0]
+    ways = [{"name": "a", "method": "exact"}, {"name": "b", "method": "spea2"}]
+    assert blocks({"way": ways}) == [0, 0]
+    assert blocks({"method": ["exact", "nsga2"]}, speed_block_h=3) == [3, 3]
+    assert (
+        blocks({"method": ["nsga2", "default"]}) == blocks({"method": ["exact"]}) * 2 == [None] * 2
+    )
+    assert blocks({"method": ["exact", "nsga2"]}, objective="time") == [None, None]
+
+
+def test_notes_of_a_study_are_stated_once():
+    frame = pd.DataFrame({"front": ["[[1, 2]]", "[[1, 2]]"], UNREAD: ["The waves do not.", None]})
+    study = Study("methods", {"voyage": {"objective": "front"}}, {"method": ["exact", "nsga2"]})
+    waves, blocks = study_notes(study, frame)
+    assert waves.startswith("On the routes of 1 of 2 voyages") and waves.endswith("do not.")
+    assert "the method exact has no such blocks" in blocks
+    assert study_notes(Study("a", {"voyage": {}}), frame[["front"]]) == []
+
+
+@pytest.mark.slow
+def test_waves_without_effect_are_stated_in_the_summary(folder, tmp_path, capsys):
+    waves = tmp_path / "waves.nc"
+    name = "sea_surface_wave_significant_height"
+    with xr.open_dataset(folder / "year.nc") as year:
+        height = 0.0 * year["eastward_sea_water_velocity"] + 3.0
+        height.attrs = {"standard_name": name, "units": "m"}
+        height.rename(name).to_dataset().to_netcdf(waves)
+    study = base(
+        folder, ship="handysize-bulker", sea=[str(waves)], fill={"wind": 0, "currents": 0},
+        axes={"depart": ["2026-02-05", "2026-02-06"]},
+    )  # fmt: skip
+    run_study(study, tmp_path / "out")
+    (note,) = summarise_study(tmp_path / "out").notes
+    assert "all voyages" in note and "The waves do not slow the ship: up to 3.0 m" in note
+    assert main(["study", "summary", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr().out.count("The waves do not slow the ship") == 1
+
+
 def test_a_draw_of_one_entry_does_not_depend_on_the_others():
     sample = {"count": 50, "seed": 3, "speed_kn": {"normal": [12.0, 0.5]}}
     data = {"voyage": {"start": "A", "goal": "B"}, "sample": sample}
@@ -120,7 +166,19 @@ def test_a_draw_of_one_entry_does_not_depend_on_the_others():
         ({"axes": {"spede_kn": [1]}}, "speed_kn"),
         ({"axes": {"speed_kn": []}}, "no values"),
         ({"axes": {"depart": {"from": "2026-02-01", "to": "2026-01-01", "step_h": 1}}}, "range"),
-        ({"sample": {"count": 0}}, "whole number"),
+        ({"sample": {"count": 0}}, "count of the sample is 0. It is a whole number, 1 or more"),
+        (
+            {"axes": {"speed_kn": [10], "rules": [{"name": "a", "speed_kn": 11}]}},
+            "Both the axis speed_kn and the axis rules set speed_kn",
+        ),
+        (
+            {"axes": {"speed_kn": [10]}, "sample": {"speed_kn": {"normal": [11, 1]}}},
+            "Both the axis speed_kn and the sample set speed_kn",
+        ),
+        (
+            {"axes": {"way": [{"name": "a", "speed_kn": 11}, {"name": "a", "speed_kn": 12}]}},
+            "Two values of the axis way have the name 'a'",
+        ),
         ({"sample": {"speed_kn": {"poisson": [1]}}}, "uniform"),
         ({"compare": ["luck"]}, "comparison"),
         ({"fill": {"waves": "fetch"}}, "fetch"),

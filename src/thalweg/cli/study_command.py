@@ -258,6 +258,7 @@ def _summary(arguments: argparse.Namespace) -> int:
             )
         }
         parts["voyages_left"] = summary.left
+        parts["notes"] = summary.notes
         print(json.dumps(parts, indent=2, allow_nan=False))
         return SUCCESS
     _print_voyages(summary.voyages)
@@ -269,8 +270,9 @@ def _summary(arguments: argparse.Namespace) -> int:
         print()
     if not summary.choices.empty:
         print(
-            "Share of departures for which a value is the best (chosen), and of those with the "
-            "same choice at the next departure (persistence):"
+            "Share of departures for which a value is the best (chosen; values that are equally "
+            "good share it: tied), and of those with the same choice at the next departure "
+            "(persistence):"
         )
         print(summary.choices.round(2).to_string(index=False, na_rep="-"))
         print()
@@ -279,6 +281,8 @@ def _summary(arguments: argparse.Namespace) -> int:
         print("Accuracy: gap_percent of the objective to the finest:")
         print(summary.fidelity.round(3).to_string(index=False, na_rep="-"))
     _print_annual(summary.annual)
+    for note in summary.notes:
+        print(f"Note: {note}")
     for _, row in summary.refusals.head(5).iterrows():
         count = f"{row['voyages']} voyages" if row["voyages"] > 1 else "1 voyage"
         print(f"{count} without a route ({row['refusal']}): {row['reason']}")

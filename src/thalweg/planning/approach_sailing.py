@@ -341,6 +341,7 @@ def plan_along_approaches(
             f"{sailing.speed / KNOT:.1f} kn: arrival {format_time(route.arrive)}.",
             "Allow more time.",
             field="arrive_by",
+            earliest=format_time(route.arrive),
         )
     front, value = None, route.time_h
     if voyage.chooses_speeds:

@@ -13,6 +13,7 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.carbon_intensity import (
+    SHIP_TYPES,
     attained_cii,
     cii_rating,
     cii_ship_type,
@@ -32,6 +33,7 @@ from thalweg.ship.performance_sheet_weather import (
     weather_beyond_limits,
     weather_without_model,
 )
+from thalweg.ship.schema.hull_types import plain_hull_type
 from thalweg.ship.schema.unusual_numbers import unusual_numbers
 from thalweg.ship.ship import Ship
 from thalweg.ship.ship_assumptions import load_factor_without_effect
@@ -276,7 +278,7 @@ def carbon_intensity_of(ship: Ship, co2: float, *, year: int) -> dict[str, Any] 
         does not know. None without a capacity in the ship file.
     """
     hull = ship.file.hull
-    kind = (hull.type or "").casefold().replace(" ", "_").replace("-", "_")
+    kind = plain_hull_type(hull.type)
     try:
         by_tonnage = cii_ship_type(kind).capacity == "gt"
         known = True
@@ -345,7 +347,7 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
     elif not known("cii") and known("speed_kn"):
         missing.append("CII: add hull.deadweight_t, or hull.gross_tonnage for some types of ship")
     elif known("cii") and all((row["cii"] or {}).get("rating_2026") is None for row in rows):
-        missing.append("rating of the CII: add hull.type as the regulation has it")
+        missing.append(f"rating of the CII: add hull.type, one of {', '.join(SHIP_TYPES)}")
     return missing
 
 

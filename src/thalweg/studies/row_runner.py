@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -17,6 +18,7 @@ from thalweg.core.given_numbers import finite_or_none
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning import Plan, Voyage, plan
 from thalweg.planning.report.filled_weather import has_fills, wave_shares
+from thalweg.planning.report.unread_weather import unread_weather_notes
 from thalweg.planning.report.waiting_report import hours_above_limits
 from thalweg.planning.request.filled_sea import filled_in_turns
 from thalweg.planning.request.voyage_endpoints import NOT_REACHED
@@ -31,9 +33,12 @@ from thalweg.sea import Sea
 from thalweg.sea.fill_policies import FETCH_LIMITED
 from thalweg.ship import Ship
 from thalweg.studies.series_rows import SeriesInputs, series_figures, series_key
-from thalweg.studies.study import StudyRow, canonical_json
+from thalweg.studies.study import StudyRow
 from thalweg.studies.study_axes import fill_policies
+from thalweg.studies.study_checks import canonical_json
 
+#: Column with the weather on a route that the ship does not read.
+UNREAD = "unread_weather"
 _WAVE_HEIGHT = "sea_surface_wave_significant_height"
 #: Largest values over a route: column and sampled variables.
 _EXTREMES = {
@@ -195,6 +200,8 @@ def _route_figures(route: Route, ship: Ship, sea: Sea) -> dict[str, Any]:
             figures[name] = finite_or_none(indicator_value(route, name))
     figures["first_violation"] = str(route.violations[0]) if route.violations else None
     figures["waiting_above_limits_h"] = hours_above_limits(route, ship)
+    unread = unread_weather_notes(route, sea, ship) if math.isfinite(route.arrive) else []
+    figures[UNREAD] = " ".join(unread) or None
     figures |= worst_weather(route.samples)
     height = route.samples.get(_WAVE_HEIGHT)
     if height is not None and has_fills(sea):

@@ -21,6 +21,7 @@ _CHOSEN_BY: Final = {
 #: Axes that are no choice of a master.
 _NO_CHOICE: Final = (*FIDELITY_AXES, "coast", "detail", "member", "method", "sea", "seed")
 _MOST_TOGETHER_H: Final = 6  # hours of the day in one row of a heat map of random departures
+_TIE: Final = 1e-6  # share by which figures differ that count as equal
 _ENOUGH: Final = 5  # routes in the middle cell of such a heat map
 
 
@@ -76,8 +77,10 @@ def choices_by_axis(frame: pd.DataFrame, usable: pd.Series, axes: list[str]) -> 
     -------
     pandas.DataFrame
         ``axis``, ``value``, ``month``, ``departures``, ``chosen`` (share of the departures with any
-        route, by the figure of the objective) and ``persistence`` (share of successive departures
-        of the month with the same choice). Empty where departures have no such choice, or for a
+        route, by the figure of the objective; a departure in which several values are equally good
+        is divided among them), ``tied`` (share of the departures in which the value is one of
+        several that are equally good) and ``persistence`` (share of successive departures of the
+        month with the same choice). Empty where departures have no such choice, or for a
         single departure.
     """
     objective = str(frame.get("objective", pd.Series(dtype=object)).dropna().iloc[:1].squeeze())
@@ -87,30 +90,64 @@ def choices_by_axis(frame: pd.DataFrame, usable: pd.Series, axes: list[str]) -> 
     found: list[dict[str, Any]] = []
     good = frame[usable & frame[figure].notna()]
     for axis in (name for name in axes if good[name].nunique() > 1 and name not in _NO_CHOICE):
-        others = [name for name in axes if name != axis]
-        rows = good.sort_values([*others, "depart", figure], kind="stable", key=_as_sortable)
-        best = rows.drop_duplicates([*others, "depart"])
-        month = best["month"] if "month" in best else pd.Series(0, index=best.index)
-        first = (best[others] != best[others].shift()).any(axis=1) if others else False
-        same = (best[axis] == best[axis].shift()) & (month == month.shift()) & ~first
-        pairs = (month == month.shift()) & ~first
-        for number in sorted(month.unique()):
-            of_month = month == number
-            count, successive = int(of_month.sum()), int((pairs & of_month).sum())
-            for value, times in best[of_month][axis].astype(str).value_counts().items():
+        best = _best_of_departures(good, axis, [name for name in axes if name != axis], figure)
+        for number in sorted(best["month"].unique()):
+            of_month = best[best["month"] == number]
+            once = of_month[of_month["first"]]
+            successive = int(once["follows"].sum())
+            for value, of_value in of_month.groupby("value", sort=False):
                 found.append(
                     {
                         "axis": axis,
                         "value": value,
                         "month": int(number) or None,
-                        "departures": count,
-                        "chosen": times / count,
+                        "departures": len(once),
+                        "chosen": float(of_value["share"].sum()) / len(once),
+                        "tied": float((of_value["share"] < 1.0).sum()) / len(once),
                         "persistence": (
-                            float((same & of_month).sum() / successive) if successive else None
+                            float((once["same"] & once["follows"]).sum() / successive)
+                            if successive
+                            else None
                         ),
                     }
                 )
     return pd.DataFrame(found)
+
+
+def _best_of_departures(
+    good: pd.DataFrame, axis: str, others: list[str], figure: str
+) -> pd.DataFrame:
+    """Return a row for each value of an axis that is best in a departure, several where they tie.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``value``; ``share``: one over the number of values that tie; ``month`` (0 where unknown);
+        ``first``: in one row of each departure; ``follows``: whether it is after another departure
+        of the month; ``same``: whether the same values are best there.
+    """
+    keys = [*others, "depart"]
+    rows = good.assign(value=good[axis].astype(str)).sort_values(
+        [*keys, "value"], kind="stable", key=_as_sortable
+    )
+    least = rows.groupby(keys, dropna=False)[figure].transform("min")
+    tied = rows[rows[figure] <= least * (1.0 + _TIE)].drop_duplicates([*keys, "value"])
+    of_departure = tied.groupby(keys, dropna=False)["value"]
+    count = of_departure.transform("size")
+    together = tied["value"].copy()
+    if (count > 1).any():
+        together[count > 1] = of_departure.transform(lambda names: "\n".join(names))[count > 1]
+    best = tied.assign(share=1.0 / count, together=together, first=~tied.duplicated(keys))
+    best["month"] = best.get("month", 0)
+    once = best[best["first"]]
+    before = once.shift()
+    follows = once["month"] == before["month"]
+    for name in others:
+        follows &= (once[name] == before[name]) | (once[name].isna() & before[name].isna())
+    best["follows"] = follows.reindex(best.index, fill_value=False)
+    same = once["together"] == before["together"]
+    best["same"] = same.reindex(best.index, fill_value=False)
+    return best
 
 
 def month_by_hour(frame: pd.DataFrame, figures: list[str]) -> pd.DataFrame:

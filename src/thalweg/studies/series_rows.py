@@ -14,7 +14,7 @@ from thalweg.planning import Voyage
 from thalweg.planning.departures.departure_series import DepartureSeries
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.studies.study import canonical_json
+from thalweg.studies.study_checks import canonical_json
 
 _KEPT = 4  # series, each with the sea of two windows
 

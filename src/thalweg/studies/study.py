@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,32 +12,34 @@ from typing import Any, Final
 
 import yaml
 
-from thalweg.chart.zones.zone_set import Zones
-from thalweg.core.errors import InputError, errors_about, refuse_other_file, unknown_name_error
+from thalweg.core.errors import InputError, refuse_other_file, unknown_name_error
 from thalweg.core.file_reading import read_text_file
-from thalweg.core.given_numbers import shortened_repr
-from thalweg.planning.request.voyage_surroundings import check_charges, check_limits
-from thalweg.planning.voyage import Voyage
+from thalweg.planning.voyage_parts import TRADE_OFF_OBJECTIVES
 from thalweg.studies.annual_figures import ANNUAL_ENTRIES, checked_annual
 from thalweg.studies.study_axes import (
     MOST_ROWS,
     axis_values,
-    distribution_numbers,
     fill_policies,
     plain_data,
     sample_draws,
 )
+from thalweg.studies.study_checks import (
+    COMPARISONS,
+    SURROUNDINGS,
+    canonical_json,
+    check_axes,
+    check_entry,
+    check_mappings,
+    check_surroundings,
+    compared_names,
+    entries_of_value,
+    label_of_value,
+)
 
-#: Entries of a row beside those of a voyage.
-SURROUNDINGS: Final = (
-    "ship", "load_factor", "limits", "charges", "sea", "map", "fill", "member", "sampling", "coast",
-    "depths", "areas", "traffic", "eca", "network", "resolution_nm", "detail", "track",
-)  # fmt: skip
-_ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
-COMPARISONS: Final = ("weather_blind",)
 DETAILS: Final = ("refined", "network")  #: of routes: as `plan` gives them, or on the network alone
+_ENTRIES: Final = ("name", "voyage", "axes", "sample", "compare", "annual", *SURROUNDINGS)
 _WITHOUT_SEED: Final = "exact"  # the method that does not depend on the seed
-_DISTRIBUTIONS: Final = {"uniform": 2, "normal": 2, "choice": None}
+_WITHOUT_BLOCKS: Final = "exact"  # the method that holds no speed for a least time
 
 
 @dataclass(frozen=True)
@@ -99,17 +100,18 @@ class Study:
     annual: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        _check_surroundings(self.base)
+        check_surroundings(self.base)
         for entry in (*self.axes, *(key for key in self.sample if key not in ("count", "seed"))):
             for value in self.axes.get(entry, ()):
                 for key in value if isinstance(value, Mapping) else ():
                     if key != "name":
-                        _check_entry(key)
+                        check_entry(key)
                 if isinstance(value, Mapping):
-                    _check_surroundings(value)
+                    check_surroundings(value)
             named = all(isinstance(value, Mapping) for value in self.axes.get(entry, (None,)))
             if not named:
-                _check_entry(entry)
+                check_entry(entry)
+        check_axes(self.axes, self.sample)
         for name in self.compare:
             if name not in COMPARISONS:
                 raise unknown_name_error("comparison", name, COMPARISONS, field="compare")
@@ -142,6 +144,16 @@ class Study:
     def _draws(self) -> int:
         return int(self.sample.get("count", 1))
 
+    @property
+    def without_speed_blocks(self) -> bool:
+        """Whether all rows plan without blocks of speed, unless an entry sets their length.
+
+        The method ``exact`` has none, so an axis that compares it with others has none either.
+        """
+        values = [(axis, value) for axis, given in self.axes.items() for value in given]
+        methods = {str(entries_of_value(*one).get("method", "")) for one in values} - {""}
+        return _WITHOUT_BLOCKS in methods and len(methods) > 1
+
     def rows(self) -> list[StudyRow]:
         """Return the rows: all combinations of the axes, each with all draws of the sample.
 
@@ -151,7 +163,7 @@ class Study:
         """
         draws = sample_draws(self.sample)
         return [
-            _row(self.base, values | draw, self.compare)
+            _row(self.base, values | draw, self.compare, even=self.without_speed_blocks)
             for values in self._combinations()
             for draw in draws
         ]
@@ -254,13 +266,13 @@ class Study:
                 field="voyage",
             )
         for key in voyage:
-            _check_entry(str(key))
+            check_entry(str(key))
         base = {"voyage": voyage}
         base |= {key: plain_data(data[key]) for key in SURROUNDINGS if key in data}
         axes = data.get("axes") or {}
         sample = data.get("sample") or {}
-        _check_mappings(axes, sample)
-        compare = _compared(data.get("compare") or ())
+        check_mappings(axes, sample)
+        compare = compared_names(data.get("compare") or ())
         return cls(
             str(data.get("name", "study")),
             base,
@@ -300,97 +312,26 @@ def load_study(path: str | Path) -> Study:
     return Study.from_dict(data, Path(path).resolve().parent)
 
 
-def canonical_json(value: Any) -> str:
-    """Return JSON that is the same for equal data; `InputError` for NaN and infinity."""
-    try:
-        return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    except ValueError:
-        raise InputError(
-            "A value of the study is .nan or .inf.", "Values are finite.", "Correct it."
-        ) from None
+def _row(
+    base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[str], *, even: bool
+) -> StudyRow:
+    """Return a row.
 
-
-def _row(base: Mapping[str, Any], chosen: Mapping[str, Any], compare: Sequence[str]) -> StudyRow:
+    Parameters
+    ----------
+    even : Whether it has no blocks of speed, as the method it is compared with.
+    """
     request: dict[str, Any] = {key: value for key, value in base.items() if key != "voyage"}
     voyage = dict(base["voyage"])
     labels: dict[str, Any] = {}
     for name, value in chosen.items():
-        entries = {name: value}
-        labels[name] = value
-        if isinstance(value, Mapping):
-            entries = {key: part for key, part in value.items() if key != "name"}
-            labels[name] = value.get("name") or canonical_json(entries)
-        for key, part in entries.items():
+        labels[name] = label_of_value(name, value)
+        for key, part in entries_of_value(name, value).items():
             (request if key in SURROUNDINGS else voyage)[key] = part
+    if even and voyage.get("objective") in TRADE_OFF_OBJECTIVES:
+        voyage.setdefault("speed_block_h", 0)
     request["voyage"] = voyage
     if compare:
         request["compare"] = list(compare)
     digest = hashlib.blake2b(canonical_json(request).encode(), digest_size=12).hexdigest()
     return StudyRow(digest, request, labels)
-
-
-def _check_entry(name: str) -> None:
-    known = (*Voyage.__dataclass_fields__, *SURROUNDINGS)
-    if name not in known:
-        raise unknown_name_error("entry of a voyage", name, known, field=name)
-
-
-def _check_surroundings(entries: Mapping[str, Any]) -> None:
-    """Check the limits, charges and areas of a study, as those of a single voyage are checked."""
-    if entries.get("limits") is not None:
-        check_limits(entries["limits"])
-    if entries.get("charges") is not None:
-        check_charges(entries["charges"])
-    if isinstance(entries.get("areas"), Mapping):
-        with errors_about("areas"):
-            Zones.read(entries["areas"])
-
-
-def _compared(given: Any) -> tuple[str, ...]:
-    """Return the names of comparisons, from one or a list."""
-    names = [given] if isinstance(given, str) else given
-    if not isinstance(names, (list, tuple)) or not all(isinstance(name, str) for name in names):
-        raise InputError(
-            f"compare is {shortened_repr(given)}.",
-            f"It is one of {', '.join(COMPARISONS)}, or a list of them.",
-            "Correct it, or leave it out.",
-            field="compare",
-        )
-    return tuple(names)
-
-
-def _check_mappings(axes: Any, sample: Any) -> None:
-    for what, value in (("axes", axes), ("sample", sample)):
-        if not isinstance(value, Mapping):
-            raise InputError(
-                f"{what} is {value!r}.",
-                "It is a mapping of entries to their values.",
-                "Correct it.",
-                field=what,
-            )
-    for name, value in sample.items():
-        if name in ("count", "seed"):
-            whole = isinstance(value, int) and not isinstance(value, bool)
-            if not whole or value < (1 if name == "count" else 0):
-                raise InputError(
-                    f"{name} of the sample is {value!r}.", "It is a whole number.", "Correct it."
-                )
-        elif not _is_distribution(value):
-            raise InputError(
-                f"The distribution of {name} is {value!r}.",
-                "It is {uniform: [low, high]}, {normal: [mean, standard deviation]} or "
-                "{choice: [values]}.",
-                "Give one of these.",
-                field=name,
-            )
-        elif "choice" not in value:
-            distribution_numbers(name, value)
-
-
-def _is_distribution(value: Any) -> bool:
-    if not isinstance(value, Mapping) or len(value) != 1:
-        return False
-    ((kind, numbers),) = value.items()
-    if kind not in _DISTRIBUTIONS or not isinstance(numbers, list) or not numbers:
-        return False
-    return _DISTRIBUTIONS[kind] in (None, len(numbers))

@@ -25,7 +25,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.file_writing import make_folder, taken_lock
 from thalweg.planning.voyage import Voyage
 from thalweg.studies.row_runner import run_rows, ship_of_request
-from thalweg.studies.study import Study, StudyRow, canonical_json
+from thalweg.studies.study import Study, StudyRow
+from thalweg.studies.study_checks import canonical_json
 from thalweg.studies.study_parts import read_parts, require_parquet, write_part, write_study
 
 LOCK_FILE = "lock"  #: of a folder in which a study runs

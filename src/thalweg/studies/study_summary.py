@@ -26,6 +26,7 @@ from thalweg.studies.season_tables import (
     month_by_hour,
 )
 from thalweg.studies.study import Study
+from thalweg.studies.study_notes import study_notes
 from thalweg.studies.study_parts import read_parts, read_study
 
 #: Figures with quantiles, where rows have them; then the indicators and the savings.
@@ -77,6 +78,8 @@ class StudySummary:
     left : int
         Voyages of the study that have no result yet: until it is 0, shares and choices compare
         parts of the study only.
+    notes : tuple of str
+        On weather that has no effect on the ship, and on methods that are compared.
     """
 
     table: pd.DataFrame
@@ -90,6 +93,7 @@ class StudySummary:
     best_months: pd.DataFrame = field(default_factory=pd.DataFrame)
     fidelity: pd.DataFrame = field(default_factory=pd.DataFrame)
     left: int = 0
+    notes: tuple[str, ...] = ()
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write ``summary.csv``, ``voyages.csv``, and the tables and plots that are not empty.
@@ -241,6 +245,7 @@ def summarise_study(folder: str | Path) -> StudySummary:
         _best_months(table, by),
         fidelity_table(frame[usable], study.axes.get(fine, ()), fine),
         len({row.id for row in study.rows()}) - len(frame),
+        tuple(study_notes(study, frame)),
     )
 
 

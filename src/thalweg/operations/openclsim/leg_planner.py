@@ -29,6 +29,7 @@ from thalweg.operations.dredging.project_validation import MAX_DAYS, check_clear
 from thalweg.operations.dredging.verified_legs import SiteLegPlanner
 from thalweg.planning.request.coverage_check import check_argument_types
 from thalweg.planning.voyage import Voyage
+from thalweg.sea.standard_names import BED_DEPTH, CHANNEL_VARIABLES, plain_names
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -178,7 +179,7 @@ class LegPlanner:
         OutsidePeriodError
             If the departure is outside the period.
         NoRouteError
-            If there is no route before the period ends.
+            If there is no route before the period ends, or a place is outside the data.
         """
         time = parse_time(depart)
         if not self.start <= time < self.end:
@@ -191,6 +192,9 @@ class LegPlanner:
         planner, outward = self._site_planner_between(origin, destination)
         leg = planner.sail(share, time, outward=outward)
         if leg is None:
+            self._check_data(
+                planner.environment, {"origin": origin, "destination": destination}, time
+            )
             raise self._no_route_error(origin, destination, time, share)
         return leg
 
@@ -240,6 +244,27 @@ class LegPlanner:
                 "Move it.",
                 field=what,
             )
+
+    def _check_data(
+        self, environment: ProjectEnvironment, places: dict[str, Position], time: float
+    ) -> None:
+        """Raise `NoRouteError` where the sea is not known at an end of a leg without a route."""
+        channels = environment.needs.channels
+        names = [name for c, name in CHANNEL_VARIABLES.items() if c in channels]
+        if self.chart.has_depth:
+            names = [name for name in names if name != BED_DEPTH]
+        for what, place in places.items():
+            at = (np.array([float(x)]) for x in (time, *place))
+            values = self.sea.sample(names, *at)
+            unknown = [name for name in names if not np.isfinite(values[name]).all()]
+            if unknown:
+                raise NoRouteError(
+                    f"The {what} {format_position(*map(float, place))} is outside the data: there "
+                    f"is no {plain_names(unknown)} at {format_time(time)}.",
+                    "Both ends of a leg are within the data of the sea, given as (lat, lon).",
+                    "Correct the position, or add data there.",
+                    field=what,
+                )
 
     def _no_route_error(
         self, origin: Position, destination: Position, time: float, share: float

@@ -178,7 +178,7 @@ def _check_speeds(study: Study, state: ServiceState) -> None:
     InputError : If no ship of the study reaches one of the speeds.
     """
     from thalweg.studies.row_runner import ship_of_request
-    from thalweg.studies.study import canonical_json
+    from thalweg.studies.study_checks import canonical_json
 
     refusals: dict[float, InputError] = {}
     reached, tried = set(), set()

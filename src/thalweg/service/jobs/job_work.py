@@ -208,12 +208,16 @@ def with_faster_route(found: Plan, first: Route) -> Plan:
 def _beside(
     found: Plan, world: WorldOfJob, request: PlanRequest, stages: StageMessages
 ) -> Route | None:
-    """Return the route that ignores the weather, sailed in it; None where there is none."""
+    """Return the route that ignores the weather, sailed in it; None where there is none.
+
+    Of a front it is the fastest that keeps every limit, or else the fastest.
+    """
     if request.seas == ["calm"] or world.sea.members:
         return None
     if found.front is not None:
         compared = found.front.comparison
-        return compared.routes[0] if compared is not None and compared.routes else None
+        blind = compared.routes if compared is not None else ()
+        return next((route for route in blind if route.feasible), blind[0] if blind else None)
     if found.voyage.depart is None or found.voyage.arrive is not None:
         return None
     from thalweg.planning.demo_voyage import weather_blind

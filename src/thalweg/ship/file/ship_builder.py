@@ -23,6 +23,7 @@ from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import DraughtModel, EstimatingModel, ShipModel
 from thalweg.ship.models.function_model import model_of_function
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
+from thalweg.ship.schema.hull_types import check_hull_type
 from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file
 from thalweg.ship.schema.unusual_numbers import check_possible_numbers, check_speeds_of_powers
 from thalweg.ship.ship_limits import ShipLimits
@@ -58,6 +59,7 @@ def ship_parts(data: Mapping[str, Any], source: str) -> ShipParts:
     refuse_other_file(data, "a ship")
     file = ShipFile.of(data, source)
     check_possible_numbers(file)
+    check_hull_type(file.hull.type)
     hull = complete_hull(file.hull.plain())
     loading = build_loading(file, hull)
     model = build_model(file, hull, loading)

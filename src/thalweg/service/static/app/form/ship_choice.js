@@ -54,7 +54,7 @@ export class ShipChoice {
     this.speedRange = speeds.length ? [Math.min(...speeds), Math.max(...speeds)] : null;
     const { wave_height_m: waves, wind_speed_m_s: wind } = sheet.limits || {};
     const facts = [
-      this.speedRange ? `${number(this.speedRange[0], 1)} to ${number(this.speedRange[1], 1)} kn` : "",
+      this.speedRange ? `${[...new Set(this.speedRange.map((speed) => number(speed, 1)))].join(" to ")} kn` : "",
       known(sheet.draught_m) ? `draught ${number(sheet.draught_m, 1)} m` : "",
       known(waves) ? `waves up to ${number(waves, 1)} m` : "", known(wind) ? `wind up to ${number(wind / KNOT)} kn` : "",
     ].filter(Boolean);

@@ -56,7 +56,7 @@ export class FrontDiagram {
     for (const p of this.base) {
       if (p.x < xa || p.x > xb || p.y < ya || p.y > yb) continue;
       const dot = s("circle", { class: "base", cx: this.px(p.x), cy: this.py(p.y), r: 3.5 });
-      dot.append(s("title", {}, `Weather ignored, ${number(p.speed, 1)} kn all the way`));
+      dot.append(s("title", {}, `Weather ignored, ${number(p.speed, 1)} kn all the way${p.feasible ? "" : ": breaks a limit"}`));
       this.svg.append(dot);
     }
     this.dots = order.map((p) => {

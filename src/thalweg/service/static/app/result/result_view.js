@@ -3,9 +3,10 @@
 import { fileAddress, get, resultAddress } from "../common/api.js";
 import { durationParts, fill, h, longList, REASONS, unit } from "../common/elements.js";
 import { faultWords, remedyOf } from "../common/faults.js";
+import { WeatherIgnored } from "./weather_ignored.js";
 import { limitsBlock } from "./limits_met.js";
 import { indicatorTable } from "../form/indicators.js";
-import { duration, isCalm, known, number, position, readable, seconds, signed, signedDuration, time, titleOf } from "../common/format.js";
+import { duration, isCalm, known, number, position, readable, seconds, signed, time, titleOf } from "../common/format.js";
 import { pricesText } from "../common/prices.js";
 import { selection } from "../common/selection.js";
 
@@ -95,23 +96,23 @@ export class ResultView {
 
   #cards(route, profile, beside) {
     const card = (name, value, unitText, more) => h("div.card", {}, h("dt", {}, name), h("dd", {}, value, unitText && value !== "unknown" ? unit(unitText) : null, more ? h("small", {}, more) : null));
-    const than = (mine, other, text) => (known(mine) && known(other) && /[1-9]/.test(text(mine - other)) ? [h(`span.${mine < other ? "less" : "more"}`, {}, text(mine - other)), " against weather ignored"] : null);
+    const ignored = new WeatherIgnored(this.result.plan, route, beside);
     const cost = costOf(route), other = beside ? costOf(beside) : null;
     const waves = worst(profile, "wave_height_m"), wind = worst(profile, "wind_speed_kn");
     const besideWaves = worst(beside?.profile, "wave_height_m"), calm = isCalm(this.result.job.request);
     const assumed = card("Waves and wind", "calm", null, "assumed: no weather data");
     if (!known(route.min_ukc_m)) assumed.classList.add("wide");
-    const complete = beside && beside.feasible !== undefined && known(beside.time_h);
     return h("dl.cards", {},
-      card("Time", durationParts(route.time_h), null, complete ? than(route.time_h, beside.time_h, signedDuration) : null),
+      card("Time", durationParts(route.time_h), null, ignored.time()),
       card("Arrival, UTC", time(seconds(route.arrive)), null, known(route.waiting_h) && route.waiting_h > 0 ? `waits ${duration(route.waiting_h)}` : null),
-      card("Fuel", number(route.fuel_t, 1), "t", complete ? than(route.fuel_t, beside.fuel_t, (d) => `${signed(d)} t`) : null),
-      card("Cost", number(cost), route.currency, complete ? than(cost, other, (d) => `${signed(d, 0)}`) : null),
+      card("Fuel", number(route.fuel_t, 1), "t", ignored.amount(route.fuel_t, beside?.fuel_t, (d) => `${signed(d)} t`)),
+      card("Cost", number(cost), route.currency, ignored.amount(cost, other, (d) => `${signed(d, 0)}`)),
       known(cost) ? h("div.card.wide.prices", {}, h("dt", {}, `Prices, ${route.currency}`), h("dd", {}, pricesText(route.prices))) : null,
       card("Distance", number(route.distance_nm, 1), "nm", known(route.time_h) ? `mean ${number(route.distance_nm / route.time_h, 1)} kn` : null),
       card("CO₂", number(route.co2_t, 0), "t"),
       calm ? assumed : card("Highest waves", number(waves, 1), "m", known(besideWaves) && known(waves) ? `weather ignored: ${number(besideWaves, 1)} m` : known(waves) ? null : "no waves in the data"),
       known(route.min_ukc_m) ? card("Least under-keel clearance", number(route.min_ukc_m, 1), "m") : calm ? null : card("Strongest wind", number(wind), "kn", known(wind) ? null : "no wind in the data"),
+      ignored.card(),
       this.#members(this.result.plan),
       this.#comfort(route, card));
   }

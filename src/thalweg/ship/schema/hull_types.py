@@ -1,0 +1,44 @@
+"""Types of ship that ``hull.type`` may name: those of the CII rating, and others in words."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from thalweg.core.errors import InputError
+from thalweg.ship.methods.carbon_intensity import SHIP_TYPES
+
+#: One of these is in every other type, such as "crude oil tanker" or "research vessel".
+TYPE_WORDS: Final = (
+    "barge", "bulk", "cable", "cargo", "carrier", "catamaran", "cement", "coaster",
+    "combination", "container", "crane", "crew", "cruise", "dredg", "drill", "feeder",
+    "ferry", "fishing", "fpso", "frigate", "gas", "heavy lift", "high speed", "hopper",
+    "icebreaker", "installation", "livestock", "lng", "lpg", "multi", "naval", "navy",
+    "offshore", "other", "passenger", "patrol", "pilot", "pipe", "pusher", "reefer", "refrigerated",
+    "rescue", "research", "ro pax", "ro ro", "ropax", "roro", "sail", "supply", "survey",
+    "tanker", "tender", "training", "trawler", "tug", "vehicle", "work", "yacht",
+)  # fmt: skip
+
+
+def check_hull_type(given: str | None) -> None:
+    """Raise `InputError` for a type of ship that nobody knows: it would be taken for a cargo ship.
+
+    Parameters
+    ----------
+    given : ``hull.type`` of a ship file.
+    """
+    words = plain_hull_type(given).replace("_", " ")
+    if not words or any(word in words for word in TYPE_WORDS):
+        return
+    raise InputError(
+        f"The type of ship {given!r} is not known.",
+        f"The types of the CII rating are {', '.join(SHIP_TYPES)}; other types have one of the "
+        f"words {', '.join(TYPE_WORDS)}.",
+        "Give the type in such words, or leave out hull.type.",
+        key="hull.type",
+        value=given,
+    )
+
+
+def plain_hull_type(given: str | None) -> str:
+    """Return a type of ship in small letters, with underscores, as the CII rating has it."""
+    return (given or "").casefold().strip().replace(" ", "_").replace("-", "_")
