@@ -348,11 +348,11 @@ def least_clearance_text(route: Route) -> str:
 
 
 def _clearance_text(route: Route, least: float) -> str:
-    """Return the least clearance [m] as its violation states it, else never more than there is."""
+    """Return the least clearance [m] as its violation states it, else 5 mm too much at most."""
     for one in route.violations:
         if one.reason == _UNDER_KEEL_CLEARANCE and abs(one.value - least) < _SAME_CLEARANCE:
             return one.number_texts()[0]
-    return f"{math.floor(10.0 * (least + 1e-4)) / 10.0:.1f}" if least >= -1e-4 else f"{least:.2f}"
+    return f"{math.floor(10.0 * (least + 5e-3)) / 10.0:.1f}" if least >= -1e-4 else f"{least:.2f}"
 
 
 def kept_text(route: Route, ship: Ship | None, notes: Sequence[str]) -> str:

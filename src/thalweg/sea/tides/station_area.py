@@ -33,6 +33,7 @@ _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?"
 _WITH_AREA: Final = re.compile(rf"(.+)@({_NUMBER}(?:,{_NUMBER}){{3}})\Z", re.S)
 _LONGEST_STEP: Final = 2.5 * HOUR  # of a record; a table of high and low waters has longer ones
 _LONGEST_BETWEEN_TURNS: Final = 15.0 * HOUR  # of a diurnal tide, and some more
+_LONGER_AT_ENDS: Final = 1.8  # times the usual time between two turns: one is missing
 _WIDEST: Final = 180.0  # box [deg]
 _STEP: Final = 10.0 * MINUTE  # of the curve between high and low water
 
@@ -132,6 +133,8 @@ def _check_turns(record: TideRecord, name: str) -> None:
     level, apart = record.series[nm.WATER_LEVEL], np.diff(record.times)
     turn = np.sign(np.diff(level))
     wrong = np.isnan(turn) | (turn == 0.0) | (apart > _LONGEST_BETWEEN_TURNS)
+    # two rises or falls in turn show a row that is missing, but not the second or last but one
+    wrong[[0, -1]] |= apart[[0, -1]] > _LONGER_AT_ENDS * np.median(apart)
     again = np.append(False, turn[1:] == turn[:-1]) & ~wrong
     if (wrong | again).any():
         at = int(np.argmax(wrong | again))
