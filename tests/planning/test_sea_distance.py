@@ -214,7 +214,7 @@ def test_with_a_draught_shallow_canals_are_closed_and_shoals_avoided_or_named():
     deep = sea_distance("USNYC", "USBOS", draught_m=12.0)
     assert deep.canals == ()
     assert deep.nm > sea_distance("USNYC", "USBOS", avoid=["cape-cod"]).nm
-    shallow = sea_distance("King's Lynn", "Rotterdam", draught_m=14.0)
+    shallow = sea_distance("Karumba", "Darwin", draught_m=14.0)
     assert sum("less water than the draught" in note for note in shallow.notes) == 1
     for wrong in (0.0, -1.0, 40.0, float("nan"), "deep"):
         with pytest.raises(InputError, match="draught"):

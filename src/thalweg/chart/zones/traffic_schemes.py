@@ -37,7 +37,7 @@ INSHORE: Final = "inshore traffic zone"
 SMALL: Final = 20.0  #: length [m] below which ships may use inshore traffic zones
 _NEAR_PORT: Final = 30.0 * NAUTICAL_MILE  # ends so near a port behind an inshore zone go to it
 _CLEAR: Final = 0.25  # of the width of a lane that plans keep off the separation zone
-_ANY_COURSE: Final = -1.0  # tolerance of an area in which only crossing is not against
+_ANY_COURSE: Final = -1.0  # tolerance of an area in which every course is against
 #: From a right angle to the traffic, at which ships cross lanes and inshore traffic zones [deg].
 _CROSSING: Final = 20.0
 _LONGEST_DETOUR: Final = 4.0  # times the geodesic: farther schemes are left out
@@ -88,11 +88,15 @@ class TrafficScheme:
     ) -> list[TrafficLane]:
         """Return the lanes, and the inshore traffic zones without an end (lat, lon) inside.
 
-        An end near a port behind the zones, which ships reach through them, opens them as well.
+        An end near a port behind the zones, which ships reach through them, opens them as well. A
+        voyage from one side of the separation line to the other may cross the zones at about a
+        right angle; others would get along them by tacking at such angles.
         """
         import shapely
 
         places = shapely.points([(lon, lat) for lat, lon in ends])
+        line = shapely.LineString([(lon, lat) for lat, lon in self.line])
+        crosses = len(ends) > 1 and shapely.LineString(places).crosses(line)
         behind = any(
             float(distance(*end, *port)) < _NEAR_PORT for end in ends for port in self.ports
         )
@@ -102,7 +106,7 @@ class TrafficScheme:
             if side and (behind or lane.shape.covers(places).any())
         }
         return [
-            lane
+            replace(lane, crossing=_CROSSING) if side and crosses else lane
             for side, lane in self._lanes_and_zones
             if not side or (inshore and side not in opened)
         ]
@@ -130,9 +134,7 @@ class TrafficScheme:
                 if edge < reach:
                     shape = self._part(k, sign * edge, sign * reach)
                     name = f"{self.name}, {INSHORE}"
-                    zone = TrafficLane(
-                        name, shape, float(heading), _ANY_COURSE, AGAINST_FACTOR, _CROSSING
-                    )
+                    zone = TrafficLane(name, shape, float(heading), _ANY_COURSE, AGAINST_FACTOR)
                     lanes.append((side, zone))
         return tuple(lanes)
 
