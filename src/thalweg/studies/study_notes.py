@@ -1,4 +1,4 @@
-"""What a reader of the tables of a study has to know: said once for all of its voyages."""
+"""What a reader of the tables of a study has to know, once for all of its voyages."""
 
 from __future__ import annotations
 

@@ -9,13 +9,15 @@ from thalweg.ship.methods.carbon_intensity import SHIP_TYPES
 
 #: One of these is in every other type, such as "crude oil tanker" or "research vessel".
 TYPE_WORDS: Final = (
-    "barge", "bulk", "cable", "cargo", "carrier", "catamaran", "cement", "coaster",
-    "combination", "container", "crane", "crew", "cruise", "dredg", "drill", "feeder",
-    "ferry", "fishing", "fpso", "frigate", "gas", "heavy lift", "high speed", "hopper",
-    "icebreaker", "installation", "livestock", "lng", "lpg", "multi", "naval", "navy",
-    "offshore", "other", "passenger", "patrol", "pilot", "pipe", "pusher", "reefer", "refrigerated",
-    "rescue", "research", "ro pax", "ro ro", "ropax", "roro", "sail", "supply", "survey",
-    "tanker", "tender", "training", "trawler", "tug", "vehicle", "work", "yacht",
+    "aframax", "ahts", "barge", "boat", "bulk", "cable", "capesize", "cargo", "carrier",
+    "catamaran", "cement", "coaster", "combination", "container", "crane", "crew", "cruise",
+    "dredg", "drill", "feeder", "ferry", "fishing", "fpso", "frigate", "fso", "gas", "handy",
+    "heavy lift", "high speed", "hopper", "icebreaker", "installation", "livestock", "lng",
+    "lpg", "mpp", "multi", "naval", "navy", "offshore", "osv", "other", "panamax", "passenger",
+    "patrol", "pctc", "pilot", "pipe", "psv", "pusher", "reefer", "refrigerated", "rescue",
+    "research", "ro pax", "ro ro", "ropax", "roro", "sail", "suezmax", "supply", "survey",
+    "tanker", "tender", "training", "trawler", "tshd", "tug", "ulcc", "ulcv", "vehicle", "vlcc",
+    "vlcs", "vlgc", "work", "yacht",
 )  # fmt: skip
 
 
