@@ -180,7 +180,7 @@ def test_what_is_not_known_comes_with_the_keys_that_would_tell_it(capsys, ship_f
     assert missing(FILE) == []
     (capacity,) = missing(FILE.replace("deadweight_t: 35000,", ""))
     assert "hull.deadweight_t" in capacity
-    (kind,) = missing(FILE.replace("type: bulk carrier", "type: big ship"))
+    (kind,) = missing(FILE.replace("type: bulk carrier", "type: work boat"))
     assert "hull.type" in kind
     (fuel,) = missing(FILE.replace(", type: slow_speed_diesel", ""))
     assert fuel.startswith("fuel") and "engine.sfoc_g_per_kwh" in fuel
