@@ -23,22 +23,27 @@ pytestmark = pytest.mark.slow
 LOADS = (0.3, 0.7, 1.0)
 
 
+def write_sea(path, lat, depth, lon, level, hours):
+    """Write a sea whose bed differs by row and whose level [m] by hour."""
+    axes = ("time", "lat", "lon")
+    bed = {"standard_name": "sea_floor_depth_below_geoid", "units": "m"}
+    tide = {"standard_name": "sea_surface_height_above_geoid", "units": "m"}
+    shape = (len(hours), len(lat), len(lon))
+    data = {
+        "h": (axes[1:], np.repeat(depth[:, None], len(lon), axis=1), bed),
+        "z": (axes, np.broadcast_to(level[:, None, None], shape), tide),
+    }
+    times = np.datetime64("2026-05-01", "ns") + (hours * 3600e9).astype("timedelta64[ns]")
+    xr.Dataset(data, {"time": times, "lat": lat, "lon": lon}).to_netcdf(path)
+
+
 def gully(path):
     """Write a sea 20 m deep with a sill of 6 m between the sites, and a tide of M2, 2 m high."""
     lat = np.array([51.62, 51.675, 51.68, 51.69, 51.695, 51.75])
     depth = np.array([20.0, 20.0, 6.0, 6.0, 20.0, 20.0])
-    lon = np.array([3.58, 3.60, 3.62])
     hours = np.arange(0.0, 24.0 * 6.0, 0.25)
     level = 2.0 * np.cos(2.0 * np.pi * hours / 12.42)
-    axes = ("time", "lat", "lon")
-    bed = {"standard_name": "sea_floor_depth_below_geoid", "units": "m"}
-    tide = {"standard_name": "sea_surface_height_above_geoid", "units": "m"}
-    data = {
-        "h": (axes[1:], np.repeat(depth[:, None], 3, axis=1), bed),
-        "z": (axes, np.broadcast_to(level[:, None, None], (len(hours), 6, 3)), tide),
-    }
-    times = np.datetime64("2026-05-01", "ns") + (hours * 3600e9).astype("timedelta64[ns]")
-    xr.Dataset(data, {"time": times, "lat": lat, "lon": lon}).to_netcdf(path)
+    write_sea(path, lat, depth, np.array([3.58, 3.60, 3.62]), level, hours)
 
 
 def project(path, **changes):
@@ -73,16 +78,7 @@ def narrow_sill(path):
     depth = np.where(np.arange(55) == 32, 6.5, 20.0)  # at 51.70 N
     hours = np.arange(0.0, 24.0 * 4.0, 1.0 / 6.0)
     level = 1.5 * np.cos(2.0 * np.pi * hours / 12.4206)
-    axes = ("time", "lat", "lon")
-    bed = {"standard_name": "sea_floor_depth_below_geoid", "units": "m"}
-    tide = {"standard_name": "sea_surface_height_above_geoid", "units": "m"}
-    data = {
-        "h": (axes[1:], np.repeat(depth[:, None], 3, axis=1), bed),
-        "z": (axes, np.broadcast_to(level[:, None, None], (len(hours), 55, 3)), tide),
-    }
-    times = np.datetime64("2026-05-01", "ns") + (hours * 3600e9).astype("timedelta64[ns]")
-    coords = {"time": times, "lat": lat, "lon": [3.55, 3.6, 3.65]}
-    xr.Dataset(data, coords).to_netcdf(path)
+    write_sea(path, lat, depth, np.array([3.55, 3.6, 3.65]), level, hours)
 
 
 def test_over_a_narrow_sill_loads_are_those_that_the_referee_lets_pass(tmp_path):

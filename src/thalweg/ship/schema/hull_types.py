@@ -22,7 +22,7 @@ TYPE_WORDS: Final = (
 
 
 def check_hull_type(given: str | None) -> None:
-    """Raise `InputError` for a type of ship that nobody knows: it would be taken for a cargo ship.
+    """Raise `InputError` for an unknown type of ship, which would be taken for a cargo ship.
 
     Parameters
     ----------
