@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import format_position_minutes
 from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
@@ -161,7 +162,9 @@ def evaluate(
 
         notes = stated_time_notes(route_file_contents(Path(route)), result)
         notes += [] if chart is None else cross_track_notes(route, chart)
-        kept = tuple(v for v in result.violations if not _is_rounding_of_file(v))
+        rounded = [v for v in result.violations if _is_rounding_of_file(v)]
+        kept = tuple(v for v in result.violations if v not in rounded)
+        notes += [_rounding_note(v) for v in rounded]
         result = replace(result, assumptions=(*result.assumptions, *notes), violations=kept)
     if strict and not math.isfinite(result.arrive):
         gaps = [violation for violation in result.violations if is_data_gap(violation)]
@@ -246,6 +249,15 @@ def _is_rounding_of_file(violation: Violation) -> bool:
     if violation.reason in _WEATHER:
         return exceeded <= _WEATHER_ROUNDING * violation.limit
     return violation.reason.startswith(_CLEARANCE) and exceeded <= _CLEARANCE_ROUNDING
+
+
+def _rounding_note(violation: Violation) -> str:
+    """Return that an exceeded limit is no violation, since numbers of files are rounded."""
+    return (
+        f"{violation.reason.capitalize()} of {violation.value:.4g} where the limit is "
+        f"{violation.limit:.4g}, near {format_position_minutes(violation.lat, violation.lon)}: counted as "
+        "kept, since the numbers of a route file are rounded."
+    )
 
 
 def resolve_settings(ship: Ship, track: Track) -> tuple[Ship, Track]:
