@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 import pytest
-import xarray as xr
 
+from tests.sill_seas import narrow_sill, write_sea
 from thalweg import Ship
 from thalweg.operations.dredging import load_sequence
 from thalweg.operations.dredging.cycle_simulation import Simulator
@@ -21,20 +21,6 @@ from thalweg.operations.dredging.run_project import run_project
 
 pytestmark = pytest.mark.slow
 LOADS = (0.3, 0.7, 1.0)
-
-
-def write_sea(path, lat, depth, lon, level, hours):
-    """Write a sea whose bed differs by row and whose level [m] by hour."""
-    axes = ("time", "lat", "lon")
-    bed = {"standard_name": "sea_floor_depth_below_geoid", "units": "m"}
-    tide = {"standard_name": "sea_surface_height_above_geoid", "units": "m"}
-    shape = (len(hours), len(lat), len(lon))
-    data = {
-        "h": (axes[1:], np.repeat(depth[:, None], len(lon), axis=1), bed),
-        "z": (axes, np.broadcast_to(level[:, None, None], shape), tide),
-    }
-    times = np.datetime64("2026-05-01", "ns") + (hours * 3600e9).astype("timedelta64[ns]")
-    xr.Dataset(data, {"time": times, "lat": lat, "lon": lon}).to_netcdf(path)
 
 
 def gully(path):
@@ -70,15 +56,6 @@ def simulator(asked):
     )
     network = freeze_site_network(environment, project_network(environment), lambda text: None)
     return Simulator(asked, environment, network)
-
-
-def narrow_sill(path):
-    """Write a sea 20 m deep with a sill of 6.5 m in one row of the data, and a tide of M2."""
-    lat = 51.62 + 0.0025 * np.arange(55)
-    depth = np.where(np.arange(55) == 32, 6.5, 20.0)  # at 51.70 N
-    hours = np.arange(0.0, 24.0 * 4.0, 1.0 / 6.0)
-    level = 1.5 * np.cos(2.0 * np.pi * hours / 12.4206)
-    write_sea(path, lat, depth, np.array([3.55, 3.6, 3.65]), level, hours)
 
 
 def test_over_a_narrow_sill_loads_are_those_that_the_referee_lets_pass(tmp_path):

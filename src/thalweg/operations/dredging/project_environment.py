@@ -30,6 +30,7 @@ from thalweg.network.assembly import assemble, measured_pairs
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.operations.dredging.project_parts import Sites
 from thalweg.planning.frozen_sea import MEMORY_LIMIT
+from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
 from thalweg.planning.planning_context import greatest_speed_of, performance_table_of
 from thalweg.planning.request.requirements import (
     Requirements,
@@ -235,6 +236,7 @@ def freeze_site_network(
     if environment.bed_is_static and codes.BED_DEPTH in channels:
         channels.remove(codes.BED_DEPTH)
         network = with_bed_depth(environment, network)
+        network = with_bed_along_edges(network, environment.sea, math.inf)
     lat, lon = network.stations.lat, network.stations.lon
     steps = len(environment.sea.times(*environment.period))
     field = environment.ship.speed_field

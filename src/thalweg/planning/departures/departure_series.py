@@ -32,6 +32,7 @@ from thalweg.planning.departures.network_figures import (
 )
 from thalweg.planning.departures.path_points import SailedPath
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
+from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.offing_attempts import plan_off_land
 from thalweg.planning.planning_context import PlanningContext
@@ -132,12 +133,14 @@ class DepartureSeries:
         def build(tried: PlanningContext) -> tuple[PlanningContext, tuple[Network, ...]]:
             places = [(end.lat, end.lon) for end in ends]
             period = tried.voyage.earliest_departure, tried.data_end
-            return tried, tuple(
+            networks = (
                 build_network(
                     tried.choice.of_section(places, k), tried.chart, tried.sea, pair, period=period
                 )
                 for k, pair in enumerate(itertools.pairwise(ends))
             )
+            required = tried.needs.limits.required_depth
+            return tried, tuple(with_bed_along_edges(one, tried.sea, required) for one in networks)
 
         offing = chosen_offing(context.voyage, ship)
         at_sea, networks = plan_off_land(at_sea, ends, offing, build, length_of=_least_length)

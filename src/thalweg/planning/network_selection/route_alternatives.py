@@ -14,6 +14,7 @@ from thalweg.core.geodesy import Position
 from thalweg.network import Network, lattice, shortest_path
 from thalweg.network.alternatives.path_search import without_each_set_of_canals
 from thalweg.network.network_concatenation import concatenate_networks
+from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
 from thalweg.planning.network_selection.network_builder import LatticeBetween, build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -132,6 +133,7 @@ def _route_alternative(
         for choice, (a, b) in zip(choices, itertools.pairwise(ends))
     ]
     network = concatenate_networks([one for one, _ in found], [None] * (len(found) - 1))
+    network = with_bed_along_edges(network, context.sea, context.needs.limits.required_depth)
     name = " and ".join(canals_used(network, chart)) or OPEN_SEA
     return RouteAlternative(name, network, found[0][1] if len(found) == 1 else None)
 

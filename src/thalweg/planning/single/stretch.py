@@ -19,6 +19,7 @@ from thalweg.kernels.codes import CURRENT, REASONS
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
+from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
 from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext, expected_speed
 from thalweg.planning.report.waiting_report import window_notes
@@ -183,7 +184,8 @@ def _network(
     elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
     period = context.voyage.earliest_departure, context.data_end
-    return build_network(choice, context.chart, context.sea, ends, period=period)
+    network = build_network(choice, context.chart, context.sea, ends, period=period)
+    return with_bed_along_edges(network, context.sea, context.needs.limits.required_depth)
 
 
 def _search_and_refine(

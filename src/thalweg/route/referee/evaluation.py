@@ -253,10 +253,11 @@ def _is_rounding_of_file(violation: Violation) -> bool:
 
 def _rounding_note(violation: Violation) -> str:
     """Return that an exceeded limit is no violation, since numbers of files are rounded."""
+    place = format_position_minutes(violation.lat, violation.lon)
     return (
         f"{violation.reason.capitalize()} of {violation.value:.4g} where the limit is "
-        f"{violation.limit:.4g}, near {format_position_minutes(violation.lat, violation.lon)}: counted as "
-        "kept, since the numbers of a route file are rounded."
+        f"{violation.limit:.4g}, near {place}: counted as kept, since the numbers of a route file "
+        "are rounded."
     )
 
 

@@ -1,0 +1,70 @@
+"""Sills of one row of the data under a tide: crossed when, and only when, the referee lets them."""
+
+import numpy as np
+import pytest
+
+from tests.sill_seas import narrow_sill, write_sea
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.geodesy import distance
+from thalweg.core.units import HOUR, KNOT
+from thalweg.network import lattice
+from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
+from thalweg.sea.standard_names import BED_DEPTH
+
+START, GOAL = (51.75, 3.6), (51.65, 3.6)
+WATER = Chart.open_water(51.6, 51.8, 3.5, 3.7)
+DREDGER = Ship.from_dict(
+    {
+        "name": "dredger",
+        "hull": {"draught_m": 6.5},
+        "speeds_kn": [8.0, 10.0],
+        "fuel": {"reference_t_per_day": 20.0},
+        "engine": {"reference_speed_kn": 10.0},
+    }
+)
+
+
+def hours_until_open(required):
+    """Return when the tide of `narrow_sill` rises to a depth over the sill after 6 h [h]."""
+    return float(12.4206 * (1.0 - np.arccos((required - 6.5) / 1.5) / (2.0 * np.pi)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("objective", "speed"), [("time", 10.0), ("fuel", 8.0)])
+def test_a_sill_of_one_row_is_crossed_as_soon_as_the_tide_allows_it(tmp_path, objective, speed):
+    """Least time went 5 nm round to where a node lay on the crest; least fuel went aground."""
+    narrow_sill(tmp_path / "sill.nc")
+    voyage = Voyage(
+        start=START, goal=GOAL, depart="2026-05-01T08:00Z", objective=objective, min_ukc_m=1.0
+    )
+    sea = Sea.open(tmp_path / "sill.nc")
+    best = plan(voyage, ship=DREDGER, sea=sea, chart=WATER).best
+    assert best.feasible and best.min_ukc_m == pytest.approx(1.0, abs=0.02)
+    straight = float(distance(*START, *GOAL))
+    assert best.distance_nm * 1852.0 == pytest.approx(straight, rel=1e-3)
+    half = 0.5 * straight / (speed * KNOT)
+    opens = np.datetime64("2026-05-01").astype("datetime64[s]").astype(float)
+    opens += hours_until_open(7.5) * HOUR
+    assert best.arrive == pytest.approx(opens + half, abs=90.0)
+
+
+def test_edges_are_as_deep_as_the_least_of_the_bed_along_them(tmp_path):
+    """Against close samples; deep water and other seas stay as they are."""
+    lat, lon = 51.6 + 0.01 * np.arange(21), np.array([3.5, 3.55, 3.56, 3.6, 3.7])
+    depth = 8.0 + 6.0 * np.random.default_rng(4).random(21)
+    write_sea(tmp_path / "bed.nc", lat, depth, lon, np.zeros(3), np.arange(3.0))
+    sea = Sea.open(tmp_path / "bed.nc")
+    network = lattice(WATER, START, GOAL, spacing=1500.0)
+    found = with_bed_along_edges(network, sea, 10.0)
+    tails, heads = network.tails(), network.graph.target
+    share = np.linspace(0.0, 1.0, 2001)
+    for edge in np.random.default_rng(5).integers(0, network.n_edges, 200):
+        a, b = tails[edge], heads[edge]
+        y = network.lat[a] + share * (network.lat[b] - network.lat[a])
+        x = network.lon[a] + share * (network.lon[b] - network.lon[a])
+        bed = sea.sample([BED_DEPTH], np.zeros(share.size), y, x)[BED_DEPTH]
+        least = float(np.nanmin(bed))
+        assert least - 0.02 <= found.edges.depth[edge] <= least + 1e-3
+    assert with_bed_along_edges(network, sea, -np.inf) is network
+    assert with_bed_along_edges(network, sea, -10.0) is network  # 5 m and more deeper
+    assert with_bed_along_edges(network, Sea.calm(), 10.0) is network
