@@ -45,6 +45,7 @@ from thalweg.planning.report.distance_report import (
     shoal_notes,
 )
 from thalweg.planning.report.ice_report import ice_notes_of_way, way_left_out_notes
+from thalweg.planning.report.zone_report import war_risk_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint, resolve_places
 from thalweg.planning.seaways import (
     path_length_and_canals,
@@ -153,6 +154,7 @@ def _way_over_seas(
     joints = [len(first.line) - 1] if first else []
     joints += [len(way.line) - len(last.line)] if last else []
     notes += (*turn_back_notes(lat, lon, joints), *ice_notes_of_way(way.line))
+    notes += tuple(war_risk_notes(lat, lon))
     notes += way_left_out_notes(way.line[0], way.line[-1], way.length) if not shut else ()
     notes += () if shut else roundabout_notes(way.line, way.length)
     approaches = tuple((a.label, a.length) for a in way.approaches)

@@ -38,7 +38,7 @@ from thalweg.planning.report.waiting_report import (
     WAITS_TO_LEAVE,
 )
 from thalweg.planning.report.wave_report import TOO_STEEP
-from thalweg.planning.report.zone_report import FAR_AREAS, OVER_SPEED
+from thalweg.planning.report.zone_report import FAR_AREAS, OVER_SPEED, WAR_RISK
 from thalweg.planning.request.chart_restrictions import EXCLUDED_BY_DUES
 from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
@@ -69,6 +69,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     (STEMS, STRONG_STREAM),
     TOO_STEEP,
     WAVES_UNCOUNTED,
+    WAR_RISK,
     REACHES_ICE,
     CHECK_POSITION,
     CHECK_DEPTH,

@@ -32,7 +32,7 @@ from thalweg.planning.report.waiting_report import (
     waiting_weather_warnings,
 )
 from thalweg.planning.report.wave_report import comfort_turn_notes, steep_wave_warnings
-from thalweg.planning.report.zone_report import far_area_notes, over_speed_notes
+from thalweg.planning.report.zone_report import far_area_notes, over_speed_notes, war_risk_notes
 from thalweg.planning.request.coverage_check import UNREAD
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.route import Route
@@ -72,7 +72,9 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     """
     notes = year_warnings(route) + land_notes(context, route)
     notes += turn_back_notes_of_route(route)
-    notes += ice_warnings(route, context.sea)
+    notes += ice_warnings(route, context.sea) + war_risk_notes(
+        route.samples["lat"], route.samples["lon"]
+    )
     notes += data_gap_warnings(context.sea, route)
     notes += [text for text in route.assumptions if text.startswith(_OF_METHODS)]
     notes += slow_speed_warnings(route) + stream_warnings(route)
@@ -126,6 +128,7 @@ def given_route_warnings(
     min_ukc : Required under the keel [m].
     """
     notes = year_warnings(route) + ice_warnings(route, sea) + data_gap_warnings(sea, route)
+    notes += war_risk_notes(route.samples["lat"], route.samples["lon"])
     notes += guesses_of_files(sea.layers, frozenset(route.samples))
     notes += slow_speed_warnings(route) + stream_warnings(route)
     notes += steep_wave_warnings(route, sea)

@@ -1,4 +1,4 @@
-"""What is stated about the zones and passages of a chart: control areas, margins, speed limits."""
+"""What is stated about zones and passages: control areas, margins, speed limits, war risk."""
 
 from __future__ import annotations
 
@@ -11,9 +11,19 @@ from scipy.spatial import cKDTree
 
 from thalweg.chart import Chart
 from thalweg.chart.passages import Passage
+from thalweg.chart.ports import PORTS
 from thalweg.chart.zones.emission_control_areas import emission_control_areas
-from thalweg.core.geodesy import MEAN_RADIUS, densify, format_position, geocentric_unit_vectors
+from thalweg.chart.zones.war_risk_areas import LIST, WAR_RISK_AREAS
+from thalweg.core.geodesy import (
+    MEAN_RADIUS,
+    densify,
+    distance,
+    format_position,
+    format_position_minutes,
+    geocentric_unit_vectors,
+)
 from thalweg.core.time import duration_text
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route import Route
 from thalweg.route.passages_used import passages_used
@@ -21,6 +31,8 @@ from thalweg.route.passages_used import passages_used
 FAR_AREAS: Final = "No area that was given is near the route"  #: a note on that begins so
 _FAR: Final = 300.0 * NAUTICAL_MILE  # at least; areas so far away can have no effect
 OVER_SPEED: Final = "Faster than allowed"  #: a note on a speed limit begins so
+WAR_RISK: Final = "Listed for war risk"  #: a note on that begins so
+_AT_PORT: Final = 12.0 * NAUTICAL_MILE  # of a call, as coastal waters reach
 _SPACING: Final = 5.0 * NAUTICAL_MILE  # between positions that are tested
 _IN_PASSAGE: Final = 2.0 * NAUTICAL_MILE  # of its line, and of land
 _TOLERANCE: Final = 0.2 * KNOT  # above a limit that is not stated
@@ -46,6 +58,40 @@ def control_area_notes(chart: Chart, routes: Sequence[Route]) -> list[str]:
     if not met:
         return ["The routes pass no emission control area."]
     return [f"Emission control areas on the way: {', '.join(met)}."]
+
+
+def war_risk_notes(lat: FloatArray, lon: FloatArray) -> list[str]:
+    """Return a note on water and ports of call that are listed for war risk; else none.
+
+    Parameters
+    ----------
+    lat, lon : Waypoints from the first port to the last [deg].
+    """
+    met = []
+    lat, lon, _ = densify(lat, lon, _SPACING)
+    for area in WAR_RISK_AREAS:
+        inside = area.contains(lat, lon)
+        if inside.any():
+            first = int(np.argmax(inside))
+            met.append(f"{area.name} (from {format_position_minutes(lat[first], lon[first])})")
+    calls = {_country_at(float(lat[k]), float(lon[k])) for k in (0, -1)} - {""}
+    met += [f"ports of {area.name}" for area in WAR_RISK_AREAS if area.country_code in calls]
+    if not met:
+        return []
+    return [
+        f"{WAR_RISK}: {', '.join(met)}, as listed by insurers ({LIST}; the list changes). Nothing "
+        "is known here of attacks, mines, closed ports and sanctions: read the navigational "
+        "warnings and ask the insurer before sailing."
+    ]
+
+
+def _country_at(lat: float, lon: float) -> str:
+    """Return the code of the country of the nearest port, if that is near; else an empty text."""
+    ports = PORTS.all
+    places = np.array([(port.lat, port.lon) for port in ports])
+    away = np.asarray(distance(lat, lon, places[:, 0], places[:, 1]))
+    nearest = int(np.argmin(away))
+    return ports[nearest].country_code if away[nearest] <= _AT_PORT else ""
 
 
 def margin_notes(chart: Chart) -> list[str]:
