@@ -7,6 +7,8 @@ from thalweg.chart.port_names import loose_port_names, normalised_port_name
 from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
 from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.request.voyage_endpoints import resolve_endpoint
+from thalweg.planning.seaways import world_chart
 
 
 @pytest.mark.parametrize(
@@ -91,3 +93,30 @@ def test_loose_forms():
     name = normalised_port_name("Petropavlovsk-Kamchatskiy")
     assert loose_port_names(name) == ("petropavlovskkamchatski", "petropavlovsk")
     assert loose_port_names("kyiv") == ()
+
+
+def test_only_names_that_a_word_may_be_a_slip_of_are_listed():
+    """Elblag, when it was not in the table, was answered with Port Kembla and Port Klang."""
+    with pytest.raises(InputError, match=r"Nearest in spelling: Rotterdam, NL \(NLRTM\)\."):
+        PORTS.lookup("Rotterdan")
+    with pytest.raises(InputError, match="no port named 'Qwmlxag' in the table of ports") as caught:
+        PORTS.lookup("Qwmlxag")
+    assert "Nearest" not in str(caught.value) and "Check the spelling" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "unlike"), [("Sukhoy", True), ("Danzig", True), ("Bombay", False), ("Ymuiden", False)]
+)
+def test_a_former_name_that_is_unlike_the_name_of_its_port_is_known(name, unlike):
+    assert PORTS.is_unlike(name, PORTS.lookup(name)) is unlike
+
+
+@pytest.mark.slow
+def test_a_plan_from_a_former_name_asks_to_see_whether_the_port_is_meant():
+    """Funchal - Porto Santo was planned to Vanuatu, by a former name of Luganville."""
+    end = resolve_endpoint("Sukhoy", world_chart(), "start")
+    assert (
+        end.note
+        == "A former or local name of Chornomorsk, UA (UAILK): Sukhoy. See that it is meant."
+    )
+    assert resolve_endpoint("Bombay", world_chart(), "start").note == ""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import functools
 import re
 import unicodedata
+from collections.abc import Iterable
 from typing import Final, Protocol
 
 from thalweg.core.errors import InputError
@@ -43,6 +45,10 @@ _PORT_WORDS_AFTER: Final = (
     " hamn",
     " havn",
 )
+#: Least share of letters in common of names that are slips of another (`difflib`), and by how much
+#: less than the best one has it.
+_ALIKE: Final = 0.7
+_AS_ALIKE: Final = 0.12
 #: A place name of fewer letters is not shortened further.
 _SHORTEST_PLACE: Final = 4
 #: A name of fewer letters is compared letter by letter.
@@ -120,6 +126,13 @@ def decimal_commas_error(text: str) -> InputError | None:
         f"Give {text.strip().replace(',', '.').replace(';', ' ')!r}.",
         value=text,
     )
+
+
+def names_spelt_alike(wanted: str, names: Iterable[str]) -> list[str]:
+    """Return the names that a word may be a slip of, best first; none if all differ much."""
+    alike = difflib.get_close_matches(wanted, list(names), n=4, cutoff=_ALIKE)
+    shares = [difflib.SequenceMatcher(None, name, wanted).ratio() for name in alike]
+    return [name for name, share in zip(alike, shares) if share >= shares[0] - _AS_ALIKE]
 
 
 @functools.cache

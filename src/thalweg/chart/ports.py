@@ -17,11 +17,12 @@ from thalweg.chart.port_names import (
     decimal_commas_error,
     is_in_state,
     loose_port_names,
+    names_spelt_alike,
     normalised_port_name,
     place_name,
     written_names,
 )
-from thalweg.core.errors import InputError, close_matches
+from thalweg.core.errors import InputError
 from thalweg.core.file_reading import table_rows
 from thalweg.core.geodesy import Position, distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
@@ -186,6 +187,13 @@ class Ports:
         except InputError:
             return None
 
+    def is_unlike(self, text: str, port: Port) -> bool:
+        """Return whether a text is only a former or local name of a port, unlike its own."""
+        if self._named(text).get(port, True):
+            return False
+        own = normalised_port_name(port.display_name)
+        return not names_spelt_alike(normalised_port_name(text.partition(",")[0]), [own])
+
     def _named(self, text: str) -> dict[Port, bool]:
         """Return the ports of a name, with or without its country or region."""
         found = self._with_name(text)
@@ -242,10 +250,9 @@ class Ports:
         return self._misspelt(text, normalised_port_name(name))
 
     def _misspelt(self, text: str, wanted: str) -> InputError:
-        within = [
-            n for n in self._by_name if len(wanted) >= 3 and wanted in n.replace("-", " ").split()
-        ]
-        names = list(dict.fromkeys([*within[:3], *close_matches(wanted, self._by_name, 4)]))
+        words = f" {wanted} " if len(wanted) >= 3 else "\n"
+        within = [name for name in self._by_name if words in f" {name} ".replace("-", " ")]
+        names = within[:4] or names_spelt_alike(wanted, self._by_name)
         near = list(dict.fromkeys(_by_importance(self._by_name[name])[0] for name in names))[:5]
         return InputError(
             f"There is no port named {text!r} in the table of ports.",

@@ -44,7 +44,7 @@ from thalweg.planning.request.coverage_check import CHECK_YEAR, UNREAD
 from thalweg.planning.request.offing_choice import NO_OFFING_ROUTE
 from thalweg.planning.request.shoal_choice import SHOALS_OPENED
 from thalweg.planning.request.swapped_degrees import CHECK_POSITION
-from thalweg.planning.request.voyage_endpoints import NOT_REACHED
+from thalweg.planning.request.voyage_endpoints import NOT_REACHED, OTHER_NAME
 from thalweg.route.referee.method_ranges import (
     OUT_OF_RANGE,
     WAVES_OUT_OF_RANGE,
@@ -72,6 +72,7 @@ _FIRST: Final[tuple[str | tuple[str, ...], ...]] = (
     WAR_RISK,
     REACHES_ICE,
     CHECK_POSITION,
+    OTHER_NAME,
     CHECK_DEPTH,
     (CROSSES_SHOAL, SHOALS_OPENED),
     NEAR_LAND,

@@ -34,6 +34,7 @@ MAX_SNAP_POSITION = 2_000.0
 #: The same for ports without an approach [m]; harbours are on land at every resolution.
 MAX_SNAP_PORT = 60_000.0
 NOT_REACHED: Final = "Does not reach"  #: a note on a port far from the end of the route begins so
+OTHER_NAME: Final = "A former or local name of"  #: a note on the name of a port begins so
 #: A port moved farther than this [m] is not reached: the end of the route has no port's name.
 _REACHED: Final = 2.0 * NAUTICAL_MILE
 #: Voyages shorter than this [m], or than the way to the sea or a canal, do not follow one.
@@ -144,10 +145,19 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     if isinstance(place, str):
         position = parse_position(place)
         if position is None:
-            return resolve_port(PORTS.lookup(place), chart, what)
+            return _resolve_name(place, chart, what)
     else:
         position = place
     return _resolve_position(*position, chart, what)
+
+
+def _resolve_name(name: str, chart: Chart, what: str) -> Endpoint:
+    """Return the sea end of the port of a name, with a note where its own name is unlike that."""
+    port = PORTS.lookup(name)
+    end = resolve_port(port, chart, what)
+    if not PORTS.is_unlike(name, port):
+        return end
+    return replace(end, notice=f"{OTHER_NAME} {port}: {name.strip()}. See that it is meant.")
 
 
 def resolve_port(port: Port, chart: Chart, what: str) -> Endpoint:
