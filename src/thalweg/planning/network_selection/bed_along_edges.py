@@ -21,11 +21,13 @@ from thalweg.sea.standard_names import BED_DEPTH
 
 _WATER_LEVELS: Final = 15.0  # deeper than required by this, the bed does not matter [m]
 _LONGEST_EDGE: Final = 20e3  # that is straight in degrees to 10 m [m]
+_BESIDE: Final = 1e-6  # a row or column, in steps of the grid
+_UP, _RIGHT = (1.0, 0.0), (0.0, 1.0)
 _MOST_POINTS: Final = 4_000_000  # of the data that are read
 
 
 def with_bed_along_edges(network: Network, sea: Sea, required_depth: float) -> Network:
-    """Return a network whose edges are no deeper than the bed along them.
+    """Return a network whose edges are no deeper than the bed along them, and unknown where it is.
 
     For a bed that does not change, on a grid of latitude and longitude in one file. Edges longer
     than 20 km and those over deep water stay as they are.
@@ -38,12 +40,9 @@ def with_bed_along_edges(network: Network, sea: Sea, required_depth: float) -> N
     -------
     Network : The same one where no edge changes.
     """
-    layers: list[Any] = [layer for layer in sea.layers if BED_DEPTH in layer.variables]
-    if required_depth == -np.inf or len(layers) != 1 or layers[0].period is not None:
+    if required_depth == -np.inf:
         return network
-    if not (isinstance(layers[0], GridLayer) and isinstance(layers[0].grid, RectilinearGrid)):
-        return network
-    bed = _BedGrid.around(network, layers[0])
+    bed = BedGrid.around(network.stations.lat, network.stations.lon, sea)
     if bed is None:
         return network
     shoal = bed.cells_below(required_depth + _WATER_LEVELS)
@@ -57,10 +56,18 @@ def with_bed_along_edges(network: Network, sea: Sea, required_depth: float) -> N
     over = lines.over_cells(shoal)
     depth, edges = network.edges.depth.copy(), edges[over]
     least = bed.least_along(_Lines(*(values[over] for values in lines)))
-    depth[edges] = np.where(least < depth[edges], least, depth[edges])
+    depth[edges] = np.minimum(depth[edges], least)  # unknown where either is
     if np.array_equal(depth, network.edges.depth, equal_nan=True):
         return network
     return network.with_edges(depth=depth)
+
+
+def bed_layer(sea: Sea) -> GridLayer | None:
+    """Return the layer of a bed that does not change, on a grid of axes; None for other beds."""
+    layers = [layer for layer in sea.layers if BED_DEPTH in layer.variables]
+    if len(layers) != 1 or layers[0].period is not None or not isinstance(layers[0], GridLayer):
+        return None
+    return layers[0] if isinstance(layers[0].grid, RectilinearGrid) else None
 
 
 class _Lines(NamedTuple):
@@ -97,7 +104,7 @@ class _Lines(NamedTuple):
         return line, x, y
 
 
-class _BedGrid(NamedTuple):
+class BedGrid(NamedTuple):
     """Bed depths on rows and columns.
 
     Attributes
@@ -111,18 +118,22 @@ class _BedGrid(NamedTuple):
     depth: FloatArray
 
     @classmethod
-    def around(cls, network: Network, layer: GridLayer) -> _BedGrid | None:
-        """Return the part of a layer round a network; None if it is too large or too small."""
+    def around(cls, lat: FloatArray, lon: FloatArray, sea: Sea) -> BedGrid | None:
+        """Return the bed of a sea round positions [deg], as it is filled.
+
+        None where the sea has no such bed (`bed_layer`), or too many or too few points of it.
+        """
+        layer = bed_layer(sea)
+        if layer is None:
+            return None
         grid: Any = layer.grid
-        lat, lon = np.sort(np.asarray(grid.lat, float)), np.asarray(grid.lon, float)
-        y = network.stations.lat
-        x = _turned(network.stations.lon, lon)
-        rows, columns = _between(lat, y), _between(lon, x)
-        lat, lon = lat[rows], lon[columns]
+        rows, columns = np.sort(np.asarray(grid.lat, float)), np.asarray(grid.lon, float)
+        lat = rows[_between(rows, lat)]
+        lon = columns[_between(columns, _turned(lon, columns))]
         if min(lat.size, lon.size) < 2 or lat.size * lon.size > _MOST_POINTS:
             return None
         at_lat, at_lon = (axis.ravel() for axis in np.meshgrid(lat, lon, indexing="ij"))
-        found = layer.sample([BED_DEPTH], np.zeros(at_lat.size), at_lat, at_lon)[BED_DEPTH]
+        found = sea.sample([BED_DEPTH], np.zeros(at_lat.size), at_lat, at_lon)[BED_DEPTH]
         return cls(lat, lon, found.reshape(lat.size, lon.size))
 
     def places(self, lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -132,18 +143,26 @@ class _BedGrid(NamedTuple):
         return y, np.interp(x, self.lon, np.arange(self.lon.size), np.nan, np.nan)
 
     def cells_below(self, depth: float) -> BoolArray:
-        """Return which cells have a corner of less than a depth."""
-        low = self.depth < depth
+        """Return which cells have a corner of less than a depth, or of unknown depth."""
+        low = ~(self.depth >= depth)
         return np.asarray(low[:-1, :-1] | low[1:, :-1] | low[:-1, 1:] | low[1:, 1:])
 
+    def known_all_round(self) -> BoolArray:
+        """Return which points have a known depth, with all eight round them in the grid."""
+        known = np.pad(np.isfinite(self.depth), 1, constant_values=True)
+        parts = np.lib.stride_tricks.sliding_window_view(known, (3, 3))
+        return np.asarray(parts.all(axis=(2, 3)))
+
     def least_along(self, lines: _Lines) -> FloatArray:
-        """Return the least known depth along lines, at their ends and where they cross rows and
-        columns; +inf where none is known.
+        """Return the least depth along lines, at their ends and where they cross rows and columns.
+
+        NaN where it is unknown at one of these.
         """
-        least = np.fmin(np.inf, self._bilinear(lines.y1, lines.x1))
-        least = np.fmin(least, self._bilinear(lines.y2, lines.x2))
-        for line, y, x in (lines.on_rows(), lines.on_columns()):
-            np.fmin.at(least, line, self._bilinear(y, x))
+        least = np.minimum(self._bilinear(lines.y1, lines.x1), self._bilinear(lines.y2, lines.x2))
+        for (line, y, x), (dy, dx) in ((lines.on_rows(), _UP), (lines.on_columns(), _RIGHT)):
+            for side in (-_BESIDE, 0.0, _BESIDE):  # the cells beside it may be unknown
+                with np.errstate(invalid="ignore"):  # unknown there
+                    np.minimum.at(least, line, self._bilinear(y + side * dy, x + side * dx))
         return np.asarray(least)
 
     def _bilinear(self, y: FloatArray, x: FloatArray) -> FloatArray:
@@ -159,8 +178,9 @@ class _BedGrid(NamedTuple):
 
 
 def _turned(lon: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return longitudes by whole turns from the first of an axis on [deg]."""
-    return np.asarray((lon - axis[0] + 1e-6) % 360.0 + axis[0] - 1e-6)
+    """Return longitudes by whole turns near the middle of an axis [deg]."""
+    middle = 0.5 * (axis[0] + axis[-1])
+    return np.asarray((lon - middle + 180.0) % 360.0 + middle - 180.0)
 
 
 def _between(axis: FloatArray, values: FloatArray) -> slice:

@@ -13,7 +13,10 @@ from thalweg.core.interrupt import SearchInterrupted
 from thalweg.kernels import codes
 from thalweg.network import Network, eca_fractions
 from thalweg.planning.frozen_sea import FrozenSea
+from thalweg.planning.network_selection.bed_along_edges import bed_layer
+from thalweg.planning.network_selection.bed_network import near_line
 from thalweg.planning.network_selection.route_alternatives import (
+    MAX_FRONT_NODES,
     OPEN_SEA,
     RouteAlternative,
     canals_used,
@@ -109,11 +112,18 @@ def fastest_in_known_water(
     try:
         horizon, fastest = _fastest_route(trade_off, alternative)
     except NoRouteError as error:
-        other = _on_network_of_least_time(trade_off, alternative) if _is_late(error) else None
+        other = _on_points_of_bed(trade_off, alternative)
+        if other is None and _is_late(error):
+            other = _on_network_of_least_time(trade_off, alternative)
         if other is None:
             raise
         alternative = other
         horizon, fastest = _fastest_route(trade_off, alternative)
+    else:
+        other = _on_points_of_bed(trade_off, alternative) if fastest.waiting_h > 0.0 else None
+        if other is not None:
+            alternative = other
+            horizon, fastest = _fastest_route(trade_off, alternative)
     new = gaps = data_gaps_on_route(fastest)
     while new and len(gaps) <= MAX_GAPS:
         alternative = without_unknown_water(context, alternative, new)
@@ -221,15 +231,41 @@ def _on_network_of_least_time(
     Its paths may arrive before the data end where those of the network of a front do not. None
     where that plan does not arrive either, or uses other canals.
     """
+    stretch = _feasible_least_time(trade_off, alternative)
+    if stretch is None:
+        return None
+    return replace(alternative, network=stretch.network, lattices=None)
+
+
+def _on_points_of_bed(
+    trade_off: TradeOffContext, alternative: RouteAlternative
+) -> RouteAlternative | None:
+    """Return an alternative along the plan by least time, where that is on the points of a bed.
+
+    A gully of one row of the data lies between the nodes of the network of a front.
+    """
+    context = trade_off.context
+    if context.choice.network != "auto" or bed_layer(context.sea) is None:
+        return None
+    stretch = _feasible_least_time(trade_off, alternative)
+    if stretch is None or stretch.network.meta.kind != "mesh":
+        return None
+    track = stretch.route.track
+    network = near_line(stretch.network, track.lat, track.lon, most_nodes=MAX_FRONT_NODES)
+    return replace(alternative, network=network, lattices=None)
+
+
+def _feasible_least_time(
+    trade_off: TradeOffContext, alternative: RouteAlternative
+) -> StretchResult | None:
+    """Return the plan by least time; None where it is not feasible or uses other canals."""
     try:
         stretch = _least_time_stretch(trade_off)
     except NoRouteError:
         return None
     if stretch is None or not stretch.route.feasible:
         return None
-    if not _is_of_canals(stretch, trade_off, alternative):
-        return None
-    return replace(alternative, network=stretch.network, lattices=None)
+    return stretch if _is_of_canals(stretch, trade_off, alternative) else None
 
 
 def _is_of_canals(

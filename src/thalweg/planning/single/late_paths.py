@@ -8,7 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thalweg.core.limits import Limits
+from thalweg.network import Network
+from thalweg.planning.frozen_sea import LastFrozenSea
 from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.single.isochrones import ship_for_search
+from thalweg.planning.single.lane_keeping import by_lanes_of_traffic
+from thalweg.planning.single.route_candidates import refine_track, track_from_result
 from thalweg.route import Route, Track
 from thalweg.search import SearchResult, ShipOnNetwork
 from thalweg.search.earliest_arrival import ArrivalQuery
@@ -51,6 +57,33 @@ class LatePaths:
         The earliest arrival comes first, within half an hour the shortest time under way.
         """
         return departures_without_waits(self.ship, self.query, arrive_by)
+
+
+def late_paths_of(
+    context: PlanningContext,
+    network: Network,
+    limits: Limits,
+    found: tuple[SearchResult, Route],
+    seas: LastFrozenSea,
+) -> LatePaths:
+    """Return the paths of later departures than that of a route, and of the search it is from."""
+    result, route = found
+    start, end = seas.period
+    ends = network.meta.start, network.meta.goal
+    query = ArrivalQuery(*ends, route.depart, wait=context.voyage.wait)
+
+    def refine(late: SearchResult) -> Route:
+        track = track_from_result(network, late, context.setting)
+        return by_lanes_of_traffic(context, network, refine_track(context, track, limits))
+
+    def sail(late: SearchResult) -> Route:
+        return context.evaluate(track_from_result(network, late, context.setting))
+
+    def ship_until(time: float) -> ShipOnNetwork:
+        sea = seas.freeze(context, network, start, max(end, min(time, context.data_end)))
+        return ship_for_search(context, network, sea, limits)
+
+    return LatePaths(ship_until(end), query, result.arrive, refine, sail, ship_until)
 
 
 def waiting_at_berth(track: Track, depart: float) -> Track:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -19,8 +18,12 @@ from thalweg.kernels.codes import CURRENT, REASONS
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
-from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
-from thalweg.planning.network_selection.network_builder import build_network
+from thalweg.planning.network_selection.bed_network import network_on_bed
+from thalweg.planning.network_selection.stretch_networks import (
+    lattice_may_replace,
+    mesh_is_thinned,
+    network_of_attempt,
+)
 from thalweg.planning.planning_context import PlanningContext, expected_speed
 from thalweg.planning.report.waiting_report import window_notes
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -34,7 +37,7 @@ from thalweg.planning.single.exceeded_limits import (
 from thalweg.planning.single.fewer_waits import passing_time_notes, with_best_waits
 from thalweg.planning.single.isochrones import isochrones, ship_for_search
 from thalweg.planning.single.lane_keeping import by_lanes_of_traffic
-from thalweg.planning.single.late_paths import LatePaths
+from thalweg.planning.single.late_paths import late_paths_of
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.route_candidates import (
     departing_later,
@@ -54,18 +57,16 @@ from thalweg.planning.single.weather_gaps import (
 )
 from thalweg.planning.single.weather_stall import SearchedWater
 from thalweg.route import Route
-from thalweg.route.refinement.better_route import penalty_excess
+from thalweg.route.refinement.better_route import comparison_key, penalty_excess
 from thalweg.route.route import Violation
 from thalweg.search import (
     DepartureWindow,
     LowerBound,
     SearchResult,
-    ShipOnNetwork,
     best_departure,
     earliest_arrival,
     lower_bound,
 )
-from thalweg.search.earliest_arrival import ArrivalQuery
 from thalweg.search.lower_bounds import Penalties
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
@@ -74,6 +75,7 @@ _HORIZONS = (2.5, 8.0, 30.0)
 #: Isochrones are drawn until this multiple of the stretch's time.
 _ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
+_NO_DETOUR = 1.02  # times the geodesic
 #: Attempts while the referee finds a limit exceeded between the stations: how many times finer the
 #: network is, and the step of `TIGHTENING`.
 _ATTEMPTS = ((1, 0), (1, 2), (2, 0), (2, 3), (4, 0), (4, 4))
@@ -94,12 +96,13 @@ def plan_stretch(
     gaps: tuple[Violation, ...] = ()
     rounds = 0
     attempts = deque(_ATTEMPTS)
+    bed_is_tried = False
     seas = LastFrozenSea()
     while attempts:
         finer, step = attempts.popleft()
         if finer not in networks:
             try:
-                network = _network(context, (start, goal), finer, networks)
+                network = network_of_attempt(context, (start, goal), finer, networks)
             except InputError:  # a finer network than asked for does not fit in memory
                 if finer == 1:
                     raise
@@ -113,9 +116,13 @@ def plan_stretch(
             )
         except NoRouteError as error:
             refusal = refusal or error
-            denser = _lattice_fallback_allowed(context, networks[finer]) or _mesh_is_thinned(
+            denser = lattice_may_replace(context, networks[finer]) or mesh_is_thinned(
                 context, networks[finer]
             )
+            if stretch is None and (finer, step) == (1, 0):
+                stretch = _on_points_of_bed(context, (start, goal), window)
+                if stretch is not None:
+                    break
             if stretch is None and not denser:
                 raise refusal from None
             if gaps:  # no way through known water: one finer network may find one
@@ -128,6 +135,11 @@ def plan_stretch(
                 _search_and_refine, stricter, networks[1], (start, goal), limits=limits, seas=seas
             )
             stretch = leaving_after_current(stricter, stretch, window, search)
+        if not (bed_is_tried or _goes_straight((start, goal), stretch.route)):
+            on_bed = _on_points_of_bed(context, (start, goal), window)
+            value = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
+            stretch = min(filter(None, (stretch, on_bed)), key=lambda one: value(one.route))
+        bed_is_tried = True
         if stretch.route.feasible:
             break
         seen, gaps = gaps, (*gaps, *data_gaps_on_route(tried.route))
@@ -155,37 +167,32 @@ def plan_stretch(
     return stretch
 
 
-def _lattice_fallback_allowed(context: PlanningContext, network: Network) -> bool:
-    """Return whether a lattice may replace a mesh that was chosen automatically."""
-    return context.choice.network == "auto" and network.meta.kind == "mesh"
+def _on_points_of_bed(
+    context: PlanningContext, ends: tuple[Endpoint, Endpoint], window: tuple[float, float]
+) -> StretchResult | None:
+    """Return the stretch on the points of a gridded bed; None without such a bed or a route.
+
+    A gully of one row of the data lies between the nodes of other networks.
+    """
+    limits = context.needs.limits
+    if context.choice.network != "auto" or limits.required_depth == -math.inf:
+        return None
+    network = network_on_bed(context.chart, context.sea, ends, limits.required_depth)
+    if network is None:
+        return None
+    context.report_progress("searching along the points of the bed")
+    try:
+        found = _search_and_refine(context, network, ends, window, limits, LastFrozenSea())
+    except NoRouteError:
+        return None
+    return found if found.route.feasible else None
 
 
-def _mesh_is_thinned(context: PlanningContext, network: Network) -> bool:
-    """Return whether a mesh was thinned because the user set a spacing."""
-    return network.meta.kind == "mesh" and context.choice.spacing is not None
-
-
-def _network(
-    context: PlanningContext,
-    ends: tuple[Endpoint, Endpoint],
-    finer: int,
-    networks: Mapping[int, Network],
-) -> Network:
-    context.report_progress(f"building the network from {ends[0].name} to {ends[1].name}")
-    choice, first = context.choice, networks.get(1)
-    if first is not None and _lattice_fallback_allowed(context, first):
-        # The nodes of a model cannot be refined; a lattice over the same water can.
-        spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
-        choice = replace(choice, network="lattice", spacing=spacing)
-    elif first is not None and first.meta.kind == "mesh":
-        if not _mesh_is_thinned(context, first):
-            return first
-        choice = replace(choice, spacing=None)  # all nodes, or as many as can be searched
-    elif first is not None:
-        choice = replace(choice, spacing=first.meta.spacing_m / finer)
-    period = context.voyage.earliest_departure, context.data_end
-    network = build_network(choice, context.chart, context.sea, ends, period=period)
-    return with_bed_along_edges(network, context.sea, context.needs.limits.required_depth)
+def _goes_straight(ends: tuple[Endpoint, Endpoint], route: Route) -> bool:
+    """Return whether a feasible route neither waits nor goes round anything."""
+    straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
+    length = float(route.legs["length"].sum())
+    return route.feasible and not np.any(route.track.wait) and length <= _NO_DETOUR * straight
 
 
 def _search_and_refine(
@@ -211,7 +218,7 @@ def _search_and_refine(
             found = partial(_route_on_network, context, limits, window, ends)
             route = along_way_of_seas(context, ends, route, found, limits)
     route = by_lanes_of_traffic(context, network, route)
-    paths = _late_paths(context, network, limits, (result, route), seas)
+    paths = late_paths_of(context, network, limits, (result, route), seas)
     fixed = window[1] == window[0]
     passing = passing_time_notes(context, route, paths, ends[0].name) if fixed else []
     passing += window_notes(result.departures, context.approach_times)
@@ -244,33 +251,6 @@ def _path_on_network(
     if result is None:
         _, result = _search(context, network, limits, window, ends, seas)
     return context.evaluate(track_from_result(network, result, context.setting))
-
-
-def _late_paths(
-    context: PlanningContext,
-    network: Network,
-    limits: Limits,
-    found: tuple[SearchResult, Route],
-    seas: LastFrozenSea,
-) -> LatePaths:
-    """Return the paths of later departures than that of a route, and of the search it is from."""
-    result, route = found
-    start, end = seas.period
-    ends = network.meta.start, network.meta.goal
-    query = ArrivalQuery(*ends, route.depart, wait=context.voyage.wait)
-
-    def refine(late: SearchResult) -> Route:
-        track = track_from_result(network, late, context.setting)
-        return by_lanes_of_traffic(context, network, refine_track(context, track, limits))
-
-    def sail(late: SearchResult) -> Route:
-        return context.evaluate(track_from_result(network, late, context.setting))
-
-    def ship_until(time: float) -> ShipOnNetwork:
-        sea = seas.freeze(context, network, start, max(end, min(time, context.data_end)))
-        return ship_for_search(context, network, sea, limits)
-
-    return LatePaths(ship_until(end), query, result.arrive, refine, sail, ship_until)
 
 
 def _search(
