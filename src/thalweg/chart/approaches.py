@@ -335,7 +335,7 @@ def _cell(lat: float, lon: float) -> tuple[int, int]:
 
 def _approach_of(port: Port, row: dict[str, str]) -> PortApproach:
     pairs = (pair.split(",") for pair in row["line"].split())
-    row = row | port_draughts().get(row["unlocode"], {})
+    row = row | port_draughts().get(row["unlocode"] or port.label, {})
     return PortApproach(
         port,
         tuple((float(lat), float(lon)) for lat, lon in pairs),
