@@ -76,7 +76,7 @@ def sail(zones, **more):
     voyage = Voyage(
         offing_nm=0.0, start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW, min_ukc_m=1.0, **more
     )
-    return plan(voyage, ship=SHIP, sea=SEA, chart=zones, resolution=1000.0).best
+    return plan(voyage, ship=SHIP, sea=SEA, chart=zones, resolution=1500.0).best
 
 
 def waits(route):

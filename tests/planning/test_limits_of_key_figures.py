@@ -113,12 +113,13 @@ def in_a_tide():
     )
     chart = Chart.open_water(50.0, 52.0, -0.2, 4.2).without_eca()
 
-    def one(objective, **more):
+    def one(objective, proof=0.0, **more):
         voyage = Voyage(
             start=(51.0, 0.3), goal=(51.0, 3.7), depart="2026-03-01T03:00Z", objective=objective,
             **more,
         )  # fmt: skip
-        return plan(voyage, ship=coaster, sea=sea, chart=chart, proof=2.0)
+        given = {"ship": coaster, "sea": sea, "chart": chart, "resolution": 10_000.0}
+        return plan(voyage, **given, proof=proof)
 
     return one
 
@@ -126,7 +127,7 @@ def in_a_tide():
 @pytest.mark.slow
 def test_a_limit_of_time_has_the_bound_of_a_latest_arrival(in_a_tide):
     """It had the bound of the least fuel at any time: 40 % and more below the plan."""
-    limited = in_a_tide("fuel", at_most={"time": 11.0})
+    limited = in_a_tide("fuel", proof=2.0, at_most={"time": 11.0})
     arriving = in_a_tide("fuel", arrive_by="2026-03-01T14:00Z")
     assert limited.best.fuel_t == pytest.approx(arriving.best.fuel_t, rel=1e-6)
     assert limited.lower_bound > 0.95 * limited.best.fuel_t

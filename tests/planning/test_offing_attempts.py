@@ -130,6 +130,7 @@ def test_a_plan_much_longer_than_the_straight_line_states_that_narrow_channels_a
         ship=SHIP,
         sea=Sea.calm(),
         chart=world,
+        resolution=10_000.0,
         proof=0.0,
     )
     (note,) = [one for one in found.notes if "in a straight line" in one]

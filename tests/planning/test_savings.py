@@ -29,7 +29,7 @@ def front(sea, **limits):
     voyage = Voyage(
         start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective="front", method="exact"
     )
-    return plan(voyage, ship=ship, sea=sea, chart=CHART, resolution=6.0 * 1852.0)
+    return plan(voyage, ship=ship, sea=sea, chart=CHART, resolution=9.0 * 1852.0)
 
 
 def on_the_way(lat, lon, half_width):

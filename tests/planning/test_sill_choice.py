@@ -26,9 +26,13 @@ def planned(folder: Path):
     return plan(voyage, ship=Ship.load(folder / "deep.yaml"), sea=Sea.calm())
 
 
-def test_a_ship_of_14_m_sails_through_the_malacca_strait(tmp_path):
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    return planned(tmp_path_factory.mktemp("ship"))
+
+
+def test_a_ship_of_14_m_sails_through_the_malacca_strait(found):
     """ETOPO1 has 9 m near Batu Pahat: she was sent round Java, 3,371 nm."""
-    found = planned(tmp_path)
     assert found.routes[0].distance_nm == pytest.approx(1_575.0, rel=0.03)
     assert not any("crosses water" in note for note in found.notes)  # a channel of the table
 
@@ -41,9 +45,9 @@ def test_a_sill_that_no_table_knows_is_crossed_with_a_note(tmp_path, monkeypatch
     assert note.startswith("Check the depth") and "nm longer" in note
 
 
-def test_a_ship_of_14_m_keeps_to_the_north_west_bound_lane(tmp_path):
+def test_a_ship_of_14_m_keeps_to_the_north_west_bound_lane(found):
     """The lane counted as shoal: 11 nm were against the traffic."""
-    against = [note for note in planned(tmp_path).notes if note.startswith("Runs against")]
+    against = [note for note in found.notes if note.startswith("Runs against")]
     assert not any("Malacca" in note for note in against)
 
 

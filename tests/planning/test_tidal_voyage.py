@@ -60,7 +60,7 @@ def test_alternatives_wait_for_the_tide_where_no_other_route_is_found(gauge):
         }
     )
     ends = {"start": (51.71, 3.45), "goal": (51.77, 3.70), "depart": float(low), "min_ukc_m": 3.1}
-    given = {"ship": ship, "sea": sea, "chart": Chart.open_water(*AREA), "resolution": 1000.0}
+    given = {"ship": ship, "sea": sea, "chart": Chart.open_water(*AREA), "resolution": 1500.0}
     found = alternative_plans(Voyage(**ends), **given)
     assert found.choices[0].route.waiting_h > 1.0
     notes = " ".join(found.notes)

@@ -20,7 +20,7 @@ KNOWN, UNKNOWN = 6.0, np.nan
 def planned(tmp_path):
     """Plan past high waves from 3.0E for some hours, and from 1.5E after hour 20 for a while."""
 
-    def of(until, height, objective="time", proof=3.0, first=40, **ship):
+    def of(until, height, objective="time", proof=0.0, first=40, **ship):
         hours = np.arange(97.0)
         lat, lon = np.arange(-1.0, 1.001, 0.05), np.arange(0.0, 6.001, 0.05)
         time, _, east = np.meshgrid(hours, lat, lon, indexing="ij")
@@ -44,6 +44,7 @@ def planned(tmp_path):
             sea=Sea.open(tmp_path / "waves.nc"),
             chart=Chart.open_water(-1.0, 1.0, 0.0, 6.0),
             proof=proof,
+            resolution=15_000.0,
         )
 
     return of

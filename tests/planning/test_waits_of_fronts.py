@@ -180,11 +180,11 @@ def test_a_limit_of_fuel_that_a_slower_ship_keeps_is_no_refusal(bar, tmp_path):
     path = tmp_path / "tug.yaml"
     path.write_text(TUG.replace("[6, 8, 10, 12]", "[6, 12]"))
     voyage = Voyage(
-        start=START, goal=GOAL, depart=DEPART, arrive_by="2026-07-01T16:00Z", at_most={"fuel": 0.6}
+        start=START, goal=GOAL, depart=DEPART, arrive_by="2026-07-01T16:00Z", at_most={"fuel": 0.59}
     )
     found = plan(voyage, ship=Ship.load(path), sea=bar, chart=CHART, resolution=2500.0)
     assert found.best.feasible
-    assert found.best.fuel_t < 0.6
+    assert found.best.fuel_t < 0.59
 
 
 def test_a_wait_is_lengthened_until_the_limit_is_kept(tug, bar, at_lowest_speed):

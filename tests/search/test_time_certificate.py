@@ -330,7 +330,7 @@ def test_no_ship_crosses_the_barrier_backwards_in_wind():
     names = {codes.WIND_EAST: "eastward_wind", codes.WIND_NORTH: "northward_wind"}
     barrier = ShipInBarrier(table.kernel_arrays(), setting, Limits().array, top)
     stretch = StretchToBound(sea, None, barrier, tuple(names), *ends, depart, 1.15 * length / top)
-    found = on_meshes(stretch, cells=120)
+    found = on_meshes(stretch, cells=80)
     rate = _rates_at_random_points(found, ship=table, setting=setting, count=20_000)
     assert found.value > 0.99 * length / top
     assert np.nanmax(rate) <= 1.0 + 1e-6

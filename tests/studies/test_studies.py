@@ -360,10 +360,17 @@ def comparable(frame: pd.DataFrame) -> list:
     return frame[sorted(frame.columns)].astype(object).where(frame.notna(), None).values.tolist()
 
 
+@pytest.fixture(scope="module")
+def serial(folder, tmp_path_factory):
+    """Return the results of a study of four days, run in this process."""
+    made = tmp_path_factory.mktemp("serial")
+    run_study(base(folder, axes={"depart": DAYS}), made / "out", chunk=3)
+    return comparable(read_parts(made / "out"))
+
+
 @pytest.mark.slow
-def test_processes_give_the_same_bits_and_a_killed_one_loses_nothing(folder, tmp_path):
+def test_processes_give_the_same_bits_and_a_killed_one_loses_nothing(folder, tmp_path, serial):
     study = base(folder, axes={"depart": DAYS})
-    run_study(study, tmp_path / "serial", chunk=3)
     killed = []
 
     def kill_one(state) -> None:
@@ -376,8 +383,7 @@ def test_processes_give_the_same_bits_and_a_killed_one_loses_nothing(folder, tmp
 
     run_study(study, tmp_path / "parallel", workers=2, chunk=1, progress=kill_one)
     assert killed
-    serial, parallel = (read_parts(tmp_path / name) for name in ("serial", "parallel"))
-    assert comparable(serial) == comparable(parallel)
+    assert comparable(read_parts(tmp_path / "parallel")) == serial
 
 
 def first_row_only(rows, folder):
@@ -385,10 +391,9 @@ def first_row_only(rows, folder):
 
 
 @pytest.mark.slow
-def test_long_chunks_are_kept_in_parts(folder, tmp_path, monkeypatch):
+def test_long_chunks_are_kept_in_parts(folder, tmp_path, serial, monkeypatch):
     """A chunk whose voyages take long is written as it goes, here and in processes."""
     study = base(folder, axes={"depart": DAYS})
-    run_study(study, tmp_path / "serial")
     monkeypatch.setattr(study_run, "_KEEP_S", 0.0)
     monkeypatch.setattr(study_run, "run_for_a_while", first_row_only)
     for workers in (0, 2):
@@ -396,7 +401,7 @@ def test_long_chunks_are_kept_in_parts(folder, tmp_path, monkeypatch):
         out = tmp_path / f"parts of {workers}"
         run_study(study, out, workers=workers, chunk=len(DAYS), progress=steps.append)
         assert [state.done for state in steps] == list(range(1, len(DAYS) + 1))
-        assert comparable(read_parts(tmp_path / "serial")) == comparable(read_parts(out))
+        assert comparable(read_parts(out)) == serial
 
 
 @pytest.mark.slow
