@@ -65,10 +65,11 @@ def test_a_stretch_is_tried_with_stricter_motions(monkeypatch, table):
 
     network = SimpleNamespace(meta=SimpleNamespace(kind="lattice", spacing_m=1000.0))
     monkeypatch.setattr(stretch, "_search_and_refine", tried)
-    monkeypatch.setattr(stretch, "_network", lambda *given: network)
+    monkeypatch.setattr(stretch, "network_of_attempt", lambda *given: network)
     monkeypatch.setattr(stretch, "without_unknown_edges", lambda context, own, gaps: own)
     monkeypatch.setattr(stretch, "without_exceeding_paths", lambda context, own, *places: own)
     monkeypatch.setattr(stretch, "_path_on_network", lambda *given: _route(False))
+    monkeypatch.setattr(stretch, "_on_points_of_bed", lambda *given: None)
     voyage = SimpleNamespace(latest_arrival=np.inf, arrive_by=None)
     context = _context(table, voyage=voyage)
     monkeypatch.setattr(PlanningContext, "latest_arrival", np.inf)

@@ -16,7 +16,7 @@ from thalweg.chart.depth.shoals import Shoals
 from thalweg.chart.depth.shoals_of_draught import deep_channels
 from thalweg.chart.passages import Passage
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import Position, densify, distance
+from thalweg.core.geodesy import METRES_PER_DEGREE, Position, densify, distance
 from thalweg.core.types import FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.network_selection.way_over_seas import WayOverSeas, way_over_seas
@@ -33,6 +33,7 @@ from thalweg.planning.seaways import Seaways
 LEAST_SHARE: Final = 0.02  #: closed ways have a note that save so much of the distance ...
 LEAST_SAVED: Final = 5.0 * NAUTICAL_MILE  #: ... and at least so much [m]
 _PIECE: Final = 10.0 * NAUTICAL_MILE  # of the line of a closed way, to see how far off it is
+_BULGE: Final = 0.2  # of great circles between the vertices of such lines beyond these [deg]
 _BESIDE: Final = 2.0 * NAUTICAL_MILE  # a branch so near to a closed passage leads to it
 _AS_SHORT: Final = 1.0 * NAUTICAL_MILE  # a way so little longer needs one closed way less
 
@@ -200,6 +201,10 @@ def _needed(every: _ClosedToDraught) -> dict[str, str]:
 
 def _is_beside(line: Sequence[Position], other: Sequence[Position]) -> bool:
     """Return whether two lines come within `_BESIDE` of each other."""
+    (south, north), (low, high) = ((min(p)[0], max(p)[0]) for p in (line, other))
+    apart = _BESIDE / METRES_PER_DEGREE + _BULGE
+    if south > high + apart or low > north + apart:
+        return False
     lat, lon = _dense(line, _BESIDE)
     y, x = _dense(other, _BESIDE)
     return bool(np.min(distance(lat[:, None], lon[:, None], y, x)) < _BESIDE)

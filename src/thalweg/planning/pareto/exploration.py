@@ -10,6 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.interrupt import SearchInterrupted
+from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.network import Network, eca_fractions
 from thalweg.planning.frozen_sea import FrozenSea
@@ -60,6 +61,7 @@ _TIME_BINS = 300
 #: Wait of a fastest route [h] from which on it is held against a plan of least time, and gain [s]
 #: from which on that one is taken.
 _LONG_WAIT, _EARLIER = 0.5, 60.0
+_SOONER = 0.02  # of its time that another network must save to take the place of one
 #: Settings, and tolerance of the tables of edges, where paths are refined.
 _REFINED_SETTINGS, _REFINED_TABLE_TOLERANCE = 8, 3e-3
 
@@ -112,7 +114,7 @@ def fastest_in_known_water(
     try:
         horizon, fastest = _fastest_route(trade_off, alternative)
     except NoRouteError as error:
-        other = _on_points_of_bed(trade_off, alternative)
+        other = _on_points_of_bed(trade_off, alternative, math.inf)
         if other is None and _is_late(error):
             other = _on_network_of_least_time(trade_off, alternative)
         if other is None:
@@ -120,7 +122,9 @@ def fastest_in_known_water(
         alternative = other
         horizon, fastest = _fastest_route(trade_off, alternative)
     else:
-        other = _on_points_of_bed(trade_off, alternative) if fastest.waiting_h > 0.0 else None
+        sooner = fastest.arrive - _SOONER * fastest.time_h * HOUR
+        waits = fastest.waiting_h > 0.0
+        other = _on_points_of_bed(trade_off, alternative, sooner) if waits else None
         if other is not None:
             alternative = other
             horizon, fastest = _fastest_route(trade_off, alternative)
@@ -238,17 +242,21 @@ def _on_network_of_least_time(
 
 
 def _on_points_of_bed(
-    trade_off: TradeOffContext, alternative: RouteAlternative
+    trade_off: TradeOffContext, alternative: RouteAlternative, latest: float
 ) -> RouteAlternative | None:
     """Return an alternative along the plan by least time, where that is on the points of a bed.
 
     A gully of one row of the data lies between the nodes of the network of a front.
+
+    Parameters
+    ----------
+    latest : Arrival of that plan [s since 1970-01-01T00:00Z].
     """
     context = trade_off.context
     if context.choice.network != "auto" or bed_layer(context.sea) is None:
         return None
     stretch = _feasible_least_time(trade_off, alternative)
-    if stretch is None or stretch.network.meta.kind != "mesh":
+    if stretch is None or stretch.network.meta.kind != "mesh" or stretch.route.arrive > latest:
         return None
     track = stretch.route.track
     network = near_line(stretch.network, track.lat, track.lon, most_nodes=MAX_FRONT_NODES)

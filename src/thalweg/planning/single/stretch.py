@@ -6,6 +6,7 @@ import math
 from collections import deque
 from dataclasses import replace
 from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from thalweg.core.geodesy import distance
 from thalweg.core.limits import TIGHTENING, Limits
 from thalweg.core.time import TimeLike, format_time
 from thalweg.core.units import HOUR
-from thalweg.kernels.codes import CURRENT, REASONS
+from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, LastFrozenSea
@@ -72,10 +73,24 @@ from thalweg.search.lower_bounds import Penalties
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _REFINED_SHARE = 0.05  # of the time of a path, more than refinement saves
 _HORIZONS = (2.5, 8.0, 30.0)
+#: Reasons of refused edges that a wait may remove; isochrones without waits take a hundredth of the
+#: time, and against currents they show as much.
+_OPENED_BY_WAITS: Final = frozenset(
+    codes.REASONS[code]
+    for code in (
+        codes.NO_DATA,
+        codes.DEPTH,
+        codes.WAVE_HEIGHT,
+        codes.WIND_SPEED,
+        codes.SHIP_RANGE,
+        codes.SAFETY,
+    )
+)
 #: Isochrones are drawn until this multiple of the stretch's time.
 _ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
 _NO_DETOUR = 1.02  # times the geodesic
+_CLEARLY = 2e-3  # share of the value by which a route of another network must be better
 #: Attempts while the referee finds a limit exceeded between the stations: how many times finer the
 #: network is, and the step of `TIGHTENING`.
 _ATTEMPTS = ((1, 0), (1, 2), (2, 0), (2, 3), (4, 0), (4, 4))
@@ -137,8 +152,8 @@ def plan_stretch(
             stretch = leaving_after_current(stricter, stretch, window, search)
         if not (bed_is_tried or _goes_straight((start, goal), stretch.route)):
             on_bed = _on_points_of_bed(context, (start, goal), window)
-            value = partial(comparison_key, objective=context.voyage.objective, chart=context.chart)
-            stretch = min(filter(None, (stretch, on_bed)), key=lambda one: value(one.route))
+            if on_bed is not None and _is_clearly_better(context, on_bed.route, stretch.route):
+                stretch = on_bed
         bed_is_tried = True
         if stretch.route.feasible:
             break
@@ -188,11 +203,20 @@ def _on_points_of_bed(
     return found if found.route.feasible else None
 
 
+def _is_clearly_better(context: PlanningContext, route: Route, known: Route) -> bool:
+    """Return whether a route breaks fewer limits than a known one, or saves more than it counts."""
+    chart, objective = context.chart, context.voyage.objective
+    broken, value, _ = comparison_key(route, objective, chart)
+    known_broken, known_value, _ = comparison_key(known, objective, chart)
+    return (broken, value) < (known_broken, (1.0 - _CLEARLY) * known_value)
+
+
 def _goes_straight(ends: tuple[Endpoint, Endpoint], route: Route) -> bool:
     """Return whether a feasible route neither waits nor goes round anything."""
+    if not route.feasible or np.any(route.track.wait):
+        return False
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
-    length = float(route.legs["length"].sum())
-    return route.feasible and not np.any(route.track.wait) and length <= _NO_DETOUR * straight
+    return float(route.legs["length"].sum()) <= _NO_DETOUR * straight
 
 
 def _search_and_refine(
@@ -227,8 +251,7 @@ def _search_and_refine(
     exceeded = (f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     notes = (*notes, *exceeded, *passing, *later)
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
-    # a limit opens after a wait; against currents the times without waits show as much
-    waits = bool(np.any(route.track.wait)) or bool(set(result.refused) - {REASONS[CURRENT]})
+    waits = bool(np.any(route.track.wait)) or not _OPENED_BY_WAITS.isdisjoint(result.refused)
     arrival = isochrones(context, network, frozen, route.depart, until, wait=waits)
     return StretchResult(route, result, network, arrival, notes)
 
