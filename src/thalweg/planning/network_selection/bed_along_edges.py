@@ -19,11 +19,12 @@ from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
 from thalweg.sea.standard_names import BED_DEPTH
 
-_WATER_LEVELS: Final = 15.0  # deeper than required by this, the bed does not matter [m]
+_WATER_LEVELS: Final = 8.0  # deeper than required by this, the bed does not matter [m]
 _LONGEST_EDGE: Final = 20e3  # that is straight in degrees to 10 m [m]
 _BESIDE: Final = 1e-6  # a row or column, in steps of the grid
 _UP, _RIGHT = (1.0, 0.0), (0.0, 1.0)
-_MOST_POINTS: Final = 4_000_000  # of the data that are read
+_MOST_POINTS, _POINTS_AT_ONCE = 4_000_000, 200_000  # of the data that are read
+_EDGES_AT_ONCE: Final = 20_000
 
 
 def with_bed_along_edges(network: Network, sea: Sea, required_depth: float) -> Network:
@@ -54,9 +55,10 @@ def with_bed_along_edges(network: Network, sea: Sea, required_depth: float) -> N
     tails, heads = network.tails()[edges], network.graph.target[edges]
     lines = _Lines(y[tails], x[tails], y[heads], x[heads])
     over = lines.over_cells(shoal)
-    depth, edges = network.edges.depth.copy(), edges[over]
-    least = bed.least_along(_Lines(*(values[over] for values in lines)))
-    depth[edges] = np.minimum(depth[edges], least)  # unknown where either is
+    depth = network.edges.depth.copy()
+    for part in np.array_split(np.flatnonzero(over), 1 + over.sum() // _EDGES_AT_ONCE):
+        least = bed.least_along(_Lines(*(values[part] for values in lines)))
+        depth[edges[part]] = np.minimum(depth[edges[part]], least)  # unknown where either is
     if np.array_equal(depth, network.edges.depth, equal_nan=True):
         return network
     return network.with_edges(depth=depth)
@@ -132,9 +134,9 @@ class BedGrid(NamedTuple):
         lon = columns[_between(columns, _turned(lon, columns))]
         if min(lat.size, lon.size) < 2 or lat.size * lon.size > _MOST_POINTS:
             return None
-        at_lat, at_lon = (axis.ravel() for axis in np.meshgrid(lat, lon, indexing="ij"))
-        found = sea.sample([BED_DEPTH], np.zeros(at_lat.size), at_lat, at_lon)[BED_DEPTH]
-        return cls(lat, lon, found.reshape(lat.size, lon.size))
+        rows_at_once = max(1, _POINTS_AT_ONCE // lon.size)
+        parts = [lat[k : k + rows_at_once] for k in range(0, lat.size, rows_at_once)]
+        return cls(lat, lon, np.concatenate([_sampled(sea, part, lon) for part in parts]))
 
     def places(self, lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return rows and columns of positions, with fractions; NaN outside."""
@@ -158,9 +160,11 @@ class BedGrid(NamedTuple):
 
         NaN where it is unknown at one of these.
         """
+        gaps = not np.isfinite(self.depth).all()
+        sides = (-_BESIDE, 0.0, _BESIDE) if gaps else (0.0,)  # cells beside it may be unknown
         least = np.minimum(self._bilinear(lines.y1, lines.x1), self._bilinear(lines.y2, lines.x2))
         for (line, y, x), (dy, dx) in ((lines.on_rows(), _UP), (lines.on_columns(), _RIGHT)):
-            for side in (-_BESIDE, 0.0, _BESIDE):  # the cells beside it may be unknown
+            for side in sides:
                 with np.errstate(invalid="ignore"):  # unknown there
                     np.minimum.at(least, line, self._bilinear(y + side * dy, x + side * dx))
         return np.asarray(least)
@@ -175,6 +179,13 @@ class BedGrid(NamedTuple):
                 weight = across * along  # values without weight may be unknown
                 total += np.where(weight > 0.0, weight * self.depth[j + rows, i + columns], 0.0)
         return total
+
+
+def _sampled(sea: Sea, lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return the bed on rows and columns [m]."""
+    at_lat, at_lon = (axis.ravel() for axis in np.meshgrid(lat, lon, indexing="ij"))
+    found = sea.sample([BED_DEPTH], np.zeros(at_lat.size), at_lat, at_lon)[BED_DEPTH]
+    return np.asarray(found).reshape(lat.size, lon.size)
 
 
 def _turned(lon: FloatArray, axis: FloatArray) -> FloatArray:
