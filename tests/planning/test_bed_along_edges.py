@@ -7,7 +7,7 @@ from tests.sill_seas import narrow_sill, write_sea
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
-from thalweg.network import lattice
+from thalweg.network import lattice, mesh
 from thalweg.planning.network_selection.bed_along_edges import with_bed_along_edges
 from thalweg.sea.standard_names import BED_DEPTH
 
@@ -68,3 +68,19 @@ def test_edges_are_as_deep_as_the_least_of_the_bed_along_them(tmp_path):
     assert with_bed_along_edges(network, sea, -np.inf) is network
     assert with_bed_along_edges(network, sea, -10.0) is network  # 5 m and more deeper
     assert with_bed_along_edges(network, Sea.calm(), 10.0) is network
+
+
+def test_an_edge_across_a_cell_is_as_shallow_as_its_middle(tmp_path):
+    """Between two deep points across the corner of flats the water is half as deep."""
+    lat, lon = 51.6 + 0.01 * np.arange(21), 3.5 + 0.01 * np.arange(21)
+    steps = np.where(np.eye(21) > 0.0, 8.0, 2.0)
+    write_sea(tmp_path / "steps.nc", lat, steps, lon, np.zeros(3), np.arange(3.0))
+    sea = Sea.open(tmp_path / "steps.nc")
+    network = mesh(WATER, *(axis.ravel() for axis in np.meshgrid(lat, lon, indexing="ij")))
+    found = with_bed_along_edges(network, sea, 10.0)
+    tails, heads = network.tails(), network.graph.target
+    row = np.rint((network.lat - 51.6) / 0.01).astype(int)
+    column = np.rint((network.lon - 3.5) / 0.01).astype(int)
+    along = (row == column)[tails] & (row == column)[heads] & (np.abs(row[tails] - row[heads]) == 1)
+    assert along.sum() == 40
+    assert found.edges.depth[along] == pytest.approx(5.0, abs=1e-4)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from tests.sill_seas import gully_in_unknown_water, winding_gully
+from tests.sill_seas import gully_in_unknown_water, winding_gully, write_sea
 from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
+from thalweg.core.errors import NoRouteError
 from thalweg.planning.network_selection.bed_network import near_line, network_on_bed
 from thalweg.planning.request.voyage_endpoints import Endpoint
 
@@ -64,6 +65,20 @@ def test_a_gully_in_unknown_water_is_sailed_at_least_fuel(tmp_path):
     assert best.feasible and best.waiting_h == 0.0
     assert best.min_ukc_m > 2.0
     assert 13.0 < best.distance_nm < 16.5
+
+
+@pytest.mark.slow
+def test_water_of_unknown_depth_is_not_called_too_shallow(tmp_path):
+    """No load helps where the known points touch in corners only."""
+    lat, lon = 51.60 + 0.0025 * np.arange(61), 3.40 + 0.004 * np.arange(101)
+    depth = np.full((61, 101), np.nan)
+    depth[:, :15] = depth[:, -15:] = 20.0
+    write_sea(tmp_path / "gap.nc", lat, depth, lon, np.zeros(25), np.arange(25.0))
+    with pytest.raises(
+        NoRouteError, match="on every path there is water of unknown depth"
+    ) as caught:
+        planned(tmp_path / "gap.nc", "fuel")
+    assert "too shallow" not in str(caught.value) and "Load less" not in str(caught.value)
 
 
 def test_the_network_of_a_bed_has_its_known_points_near_the_way(tmp_path):

@@ -21,8 +21,7 @@ from thalweg.sea.standard_names import BED_DEPTH
 
 _WATER_LEVELS: Final = 8.0  # deeper than required by this, the bed does not matter [m]
 _LONGEST_EDGE: Final = 20e3  # that is straight in degrees to 10 m [m]
-_BESIDE: Final = 1e-6  # a row or column, in steps of the grid
-_UP, _RIGHT = (1.0, 0.0), (0.0, 1.0)
+_ROUNDING: Final = 1e-9  # of places in rows and columns
 _MOST_POINTS, _POINTS_AT_ONCE = 4_000_000, 200_000  # of the data that are read
 _EDGES_AT_ONCE: Final = 20_000
 
@@ -94,16 +93,30 @@ class _Lines(NamedTuple):
         found = total[north, east] - total[south, east] - total[north, west] + total[south, west]
         return np.asarray(inside & (found > 0))
 
-    def on_rows(self) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Return lines and places where they cross rows of the grid."""
-        line, row = _crossed_lines(self.y1, self.y2)
-        share = (row - self.y1[line]) / (self.y2 - self.y1)[line]
-        return line, row, self.x1[line] + share * (self.x2 - self.x1)[line]
+    def crossings(self) -> tuple[IntArray, FloatArray]:
+        """Return lines, in order, and shares of them: ends, and crossings of rows and columns."""
+        rows, row = _crossed_lines(self.y1, self.y2)
+        columns, column = _crossed_lines(self.x1, self.x2)
+        every = np.arange(len(self.y1))
+        line = np.concatenate([every, every, rows, columns])
+        share = np.concatenate(
+            [
+                np.zeros(len(every)),
+                np.ones(len(every)),
+                (row - self.y1[rows]) / (self.y2 - self.y1)[rows],
+                (column - self.x1[columns]) / (self.x2 - self.x1)[columns],
+            ]
+        )
+        order = np.lexsort((share, line))
+        return line[order], share[order]
 
-    def on_columns(self) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Return lines and places where they cross columns of the grid."""
-        line, y, x = _Lines(self.x1, self.y1, self.x2, self.y2).on_rows()
-        return line, x, y
+    def at(self, line: IntArray, share: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return places at shares of lines; on a row or column to rounding, they are on it."""
+        y = self.y1[line] + share * (self.y2 - self.y1)[line]
+        x = self.x1[line] + share * (self.x2 - self.x1)[line]
+        on_row, on_column = np.rint(y), np.rint(x)
+        y = np.where(np.abs(y - on_row) < _ROUNDING, on_row, y)
+        return y, np.where(np.abs(x - on_column) < _ROUNDING, on_column, x)
 
 
 class BedGrid(NamedTuple):
@@ -156,18 +169,26 @@ class BedGrid(NamedTuple):
         return np.asarray(parts.all(axis=(2, 3)))
 
     def least_along(self, lines: _Lines) -> FloatArray:
-        """Return the least depth along lines, at their ends and where they cross rows and columns.
+        """Return the least depth along lines; NaN where it is unknown.
 
-        NaN where it is unknown at one of these.
+        Between crossings of rows and columns the depth is a parabola, by its ends and middle.
         """
-        gaps = not np.isfinite(self.depth).all()
-        sides = (-_BESIDE, 0.0, _BESIDE) if gaps else (0.0,)  # cells beside it may be unknown
-        least = np.minimum(self._bilinear(lines.y1, lines.x1), self._bilinear(lines.y2, lines.x2))
-        for (line, y, x), (dy, dx) in ((lines.on_rows(), _UP), (lines.on_columns(), _RIGHT)):
-            for side in sides:
-                with np.errstate(invalid="ignore"):  # unknown there
-                    np.minimum.at(least, line, self._bilinear(y + side * dy, x + side * dx))
-        return np.asarray(least)
+        line, share = lines.crossings()
+        depth = self._bilinear(*lines.at(line, share))
+        first = np.flatnonzero((line[1:] == line[:-1]) & (np.diff(share) > _ROUNDING))
+        middle = 0.5 * (share[first] + share[first + 1])
+        begin, end = depth[first], depth[first + 1]
+        between = self._bilinear(*lines.at(line[first], middle))
+        bend = 2.0 * (begin + end - 2.0 * between)
+        slope = 4.0 * between - end - 3.0 * begin
+        turns = (bend > 0.0) & (slope < 0.0) & (slope > -2.0 * bend)
+        least = np.minimum(begin, np.minimum(between, end))
+        least = np.where(turns, begin - slope**2 / (4.0 * np.where(turns, bend, 1.0)), least)
+        found = np.full(len(lines.y1), np.inf)
+        with np.errstate(invalid="ignore"):  # unknown there
+            np.minimum.at(found, line, depth)
+            np.minimum.at(found, line[first], least)
+        return found
 
     def _bilinear(self, y: FloatArray, x: FloatArray) -> FloatArray:
         j = np.clip(y.astype(np.int64), 0, self.lat.size - 2)

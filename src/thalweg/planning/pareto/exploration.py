@@ -114,7 +114,7 @@ def fastest_in_known_water(
     try:
         horizon, fastest = _fastest_route(trade_off, alternative)
     except NoRouteError as error:
-        other = _on_points_of_bed(trade_off, alternative, math.inf)
+        other = _along_plan_of_least_time(trade_off, alternative, math.inf)
         if other is None and _is_late(error):
             other = _on_network_of_least_time(trade_off, alternative)
         if other is None:
@@ -124,7 +124,7 @@ def fastest_in_known_water(
     else:
         sooner = fastest.arrive - _SOONER * fastest.time_h * HOUR
         waits = fastest.waiting_h > 0.0
-        other = _on_points_of_bed(trade_off, alternative, sooner) if waits else None
+        other = _along_plan_of_least_time(trade_off, alternative, sooner) if waits else None
         if other is not None:
             alternative = other
             horizon, fastest = _fastest_route(trade_off, alternative)
@@ -241,22 +241,25 @@ def _on_network_of_least_time(
     return replace(alternative, network=stretch.network, lattices=None)
 
 
-def _on_points_of_bed(
+def _along_plan_of_least_time(
     trade_off: TradeOffContext, alternative: RouteAlternative, latest: float
 ) -> RouteAlternative | None:
-    """Return an alternative along the plan by least time, where that is on the points of a bed.
+    """Return an alternative along the plan by least time, on the network of that plan.
 
     A gully of one row of the data lies between the nodes of the network of a front.
 
     Parameters
     ----------
-    latest : Arrival of that plan [s since 1970-01-01T00:00Z].
+    latest : Arrival of that plan [s since 1970-01-01T00:00Z], which is on the points of the bed;
+        infinite where the front has no route of its own, and any network will do.
     """
     context = trade_off.context
     if context.choice.network != "auto" or bed_layer(context.sea) is None:
         return None
     stretch = _feasible_least_time(trade_off, alternative)
-    if stretch is None or stretch.network.meta.kind != "mesh" or stretch.route.arrive > latest:
+    if stretch is None or stretch.route.arrive > latest:
+        return None
+    if stretch.network.meta.kind != "mesh" and math.isfinite(latest):
         return None
     track = stretch.route.track
     network = near_line(stretch.network, track.lat, track.lon, most_nodes=MAX_FRONT_NODES)

@@ -57,6 +57,15 @@ def no_route_error(
         )
         ended = found.arrival > last
     deepest = None if water is None else _deepest_path(network, water.fields, water.required)
+    if deepest is not None and deepest.depth == -math.inf:
+        return NoRouteError(
+            f"No route from {ends[0].name} to {ends[1].name}: "
+            "on every path there is water of unknown depth.",
+            str(deepest),
+            _ADVICE_UNKNOWN,
+            reasons=reasons,
+            nearest=nearest,
+        )
     if deepest is not None and deepest.missing > 0.0:
         return NoRouteError(
             f"No route from {ends[0].name} to {ends[1].name}: "
@@ -297,6 +306,10 @@ def _deepest_path(network: Network, fields: StationFields, required: float) -> D
 _ADVICE_SHALLOW = (
     "Load less (--load-factor), require less clearance (--ukc), or use data that include a higher "
     "tide."
+)
+_ADVICE_UNKNOWN = (
+    "Add data that have the depth there, or a finer --resolution where the known water is narrower "
+    "than the network of the search."
 )
 _ADVICE_TIDE = (
     "Depart later, use water levels that last longer, search a window of departures "
