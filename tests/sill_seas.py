@@ -1,7 +1,20 @@
-"""Files of seas whose bed is a sill or bar under a tide."""
+"""Files of seas whose bed is a sill, a bar or a gully under a tide, and a ship for them."""
 
 import numpy as np
 import xarray as xr
+
+from thalweg import Ship
+
+#: Needs 7.5 m with a clearance of 1 m.
+DREDGER = Ship.from_dict(
+    {
+        "name": "dredger",
+        "hull": {"draught_m": 6.5},
+        "speeds_kn": [8.0, 10.0],
+        "fuel": {"reference_t_per_day": 20.0},
+        "engine": {"reference_speed_kn": 10.0},
+    }
+)
 
 
 def write_sea(path, lat, depth, lon, level, hours):

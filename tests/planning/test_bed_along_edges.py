@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.sill_seas import narrow_sill, write_sea
-from thalweg import Chart, Sea, Ship, Voyage, plan
+from tests.sill_seas import DREDGER, narrow_sill, write_sea
+from thalweg import Chart, Sea, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR, KNOT
 from thalweg.network import lattice, mesh
@@ -13,15 +13,6 @@ from thalweg.sea.standard_names import BED_DEPTH
 
 START, GOAL = (51.75, 3.6), (51.65, 3.6)
 WATER = Chart.open_water(51.6, 51.8, 3.5, 3.7)
-DREDGER = Ship.from_dict(
-    {
-        "name": "dredger",
-        "hull": {"draught_m": 6.5},
-        "speeds_kn": [8.0, 10.0],
-        "fuel": {"reference_t_per_day": 20.0},
-        "engine": {"reference_speed_kn": 10.0},
-    }
-)
 
 
 def hours_until_open(required):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.sill_seas import gully_in_unknown_water, winding_gully, write_sea
-from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
+from tests.sill_seas import DREDGER, gully_in_unknown_water, winding_gully, write_sea
+from thalweg import Chart, Sea, Voyage, evaluate, plan
 from thalweg.core.errors import NoRouteError
 from thalweg.planning.network_selection.bed_network import near_line, network_on_bed
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -12,15 +12,6 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 START, GOAL = (51.66, 3.42), (51.69, 3.78)
 ENDS = (Endpoint("start", *START, 0.0), Endpoint("goal", *GOAL, 0.0))
 WATER = Chart.open_water(51.5, 51.85, 3.3, 3.9)
-DREDGER = Ship.from_dict(
-    {
-        "name": "dredger",
-        "hull": {"draught_m": 6.5},
-        "speeds_kn": [8.0, 10.0],
-        "fuel": {"reference_t_per_day": 20.0},
-        "engine": {"reference_speed_kn": 10.0},
-    }
-)
 STEPS = [
     (51.675, 3.496),
     (51.69, 3.496),

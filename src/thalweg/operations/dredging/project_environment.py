@@ -7,18 +7,15 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.arrays.numbered_parts import numbered_parts
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import (
     Position,
-    direct,
     distance,
-    inverse,
     positions_along,
 )
 from thalweg.core.limits import Limits
@@ -37,6 +34,7 @@ from thalweg.planning.request.requirements import (
     derive_requirements,
     required_under_keel_clearance,
 )
+from thalweg.planning.single.weather_gaps import least_along_edges
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import standard_names as nm
 from thalweg.search import PreparedNetwork, ProfileSearch, prepare_profile_search
@@ -51,7 +49,6 @@ LINE = "line"  #: kind of the network of a fixed route
 _LINE_SPACING = 300.0  # of the nodes of a fixed route [m]
 _BED_SAMPLES = 8  # samples of the bed per spacing of the network
 _SAME_PLACE = 1.0  # [m]
-_CHUNK = 200_000
 
 MessageCallback = Callable[[str], None]
 
@@ -236,7 +233,6 @@ def freeze_site_network(
     if environment.bed_is_static and codes.BED_DEPTH in channels:
         channels.remove(codes.BED_DEPTH)
         network = with_bed_depth(environment, network)
-        network = with_bed_along_edges(network, environment.sea, math.inf)
     lat, lon = network.stations.lat, network.stations.lon
     steps = len(environment.sea.times(*environment.period))
     field = environment.ship.speed_field
@@ -360,39 +356,14 @@ def _resampled_route(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]
 
 def with_bed_depth(environment: ProjectEnvironment, network: Network) -> Network:
     """Return the network with the least depth of the bed of the sea along every edge."""
-    tails, heads = network.tails(), network.graph.target
-    once = tails < heads
-    pair = tails[once].astype(np.int64) * network.n_nodes + heads[once]
+
+    def bed(lat: FloatArray, lon: FloatArray) -> FloatArray:
+        time = np.full(len(lat), environment.period[0])
+        depth = environment.sea.sample([nm.BED_DEPTH], time, lat, lon)[nm.BED_DEPTH]
+        return np.where(np.isnan(depth), -np.inf, depth)  # an edge over unknown water is unknown
+
     spacing = max(network.meta.spacing_m, 1.0) / _BED_SAMPLES
-    count = np.maximum(np.ceil(network.edges.length[once] / spacing).astype(np.int64), 1) + 1
-    least = np.full(int(once.sum()), np.inf)
-    bounds = np.searchsorted(np.cumsum(count), np.arange(0, count.sum() + _CHUNK, _CHUNK))
-    for first, last in itertools.pairwise(bounds):
-        part = slice(int(first), int(last) + 1)
-        least[part] = _minimum_bed_depth(
-            environment, network, (tails[once][part], heads[once][part]), count[part]
-        )
-    key = np.minimum(tails, heads).astype(np.int64) * network.n_nodes + np.maximum(tails, heads)
-    order = np.argsort(pair)
-    found = least[order][np.searchsorted(pair[order], key)]
-    depth = np.where(np.isnan(found), np.nan, np.minimum(network.edges.depth, found))
-    return network.with_edges(depth=depth.astype(np.float32))
-
-
-def _minimum_bed_depth(
-    environment: ProjectEnvironment,
-    network: Network,
-    ends: tuple[Any, Any],
-    count: NDArray[np.int64],
-) -> FloatArray:
-    a, b = ends
-    lat, lon = network.lat, network.lon
-    if not len(a):
-        return np.empty(0)
-    length, course, _ = inverse(lat[a], lon[a], lat[b], lon[b])
-    of, number = numbered_parts(count)
-    share = number / (count[of] - 1)
-    at = direct(lat[a][of], lon[a][of], np.asarray(course)[of], share * np.asarray(length)[of])
-    time = np.full(len(of), environment.period[0])
-    bed = environment.sea.sample([nm.BED_DEPTH], time, *at)[nm.BED_DEPTH]
-    return np.asarray(np.minimum.reduceat(bed, np.cumsum(count) - count))
+    least = least_along_edges(network, np.arange(network.n_edges), bed, spacing)
+    depth = np.where(np.isneginf(least), np.nan, np.minimum(network.edges.depth, least))
+    network = network.with_edges(depth=depth.astype(np.float32))
+    return with_bed_along_edges(network, environment.sea, math.inf)
